@@ -1,0 +1,122 @@
+#include "common/daemon.hpp"
+
+#include <systemd/sd-daemon.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <random>
+
+#include "common/clock.hpp"
+
+namespace hairpin {
+namespace {
+
+constexpr double kHeartbeatPeriod = 0.1;  // s
+constexpr int kPollPeriodMs = 10;         // for nodes with work of their own
+constexpr int kIdlePeriodMs = 100;
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+void RequestStop(int) { stop_requested = 1; }
+
+void CatchSignals() {
+  struct sigaction action {};
+  action.sa_handler = RequestStop;  // without SA_RESTART: a waiting receive returns
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int64_t RandomBootId() {
+  std::random_device random;
+  return static_cast<int64_t>((uint64_t{random()} << 32 | random()) >> 1);
+}
+
+struct Options {
+  std::string config_dir = "config";
+  std::string lcm_url = kDefaultLcmUrl;
+  std::vector<std::string> overrides;
+};
+
+void DefineOptions(CLI::App& app, Options& options) {
+  app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")->capture_default_str()->envname("HAIRPIN_CONFIG_DIR");
+  app.add_option("--lcm-url", options.lcm_url, "LCM provider")->capture_default_str()->envname("LCM_DEFAULT_URL");
+  app.add_option("--set", options.overrides, "KEY=VALUE in place of the config file's value (repeatable)")->allow_extra_args(false);
+  app.set_version_flag("--version", BuildId());
+}
+
+void Work(const std::string& name, const Options& options, const NodeFactory& factory) {
+  const Config config = Config::Load(options.config_dir, name, options.overrides);
+  Transport transport(options.lcm_url);
+  Bus bus(transport, name, RandomBootId());
+  Heartbeat heartbeat(bus);
+  const std::unique_ptr<HostedNode> node = factory(bus, config);
+  sd_notify(0, "READY=1");
+  const MonotonicClock clock;
+  int64_t last_heard = clock.NowMicros();
+  while (stop_requested == 0) {
+    const bool heard = transport.Handle(node->has_poll() ? kPollPeriodMs : kIdlePeriodMs);
+    node->Poll();
+    sd_notify(0, "WATCHDOG=1");
+    const int64_t now = clock.NowMicros();
+    if (heard || SecondsBetween(last_heard, now) >= kHeartbeatPeriod) {
+      if (!heard) heartbeat.Send();
+      last_heard = now;
+    }
+  }
+  sd_notify(0, "STOPPING=1");
+}
+
+int Fail(const std::string& name, const std::string& problems, int code) {
+  std::istringstream lines(problems);
+  for (std::string line; std::getline(lines, line);) std::cerr << name << ": " << line << '\n';
+  return code;
+}
+
+}  // namespace
+
+const char* BuildId() { return HAIRPIN_BUILD; }
+
+Heartbeat::Heartbeat(Bus& bus) : bus_(bus) {
+  bus_.OnDataTime([this](int64_t utime) { OnDataTime(utime); });
+}
+
+void Heartbeat::OnDataTime(int64_t utime) {
+  if (SecondsBetween(last_sent_utime_, utime) < kHeartbeatPeriod) return;
+  last_sent_utime_ = utime;
+  Send();
+}
+
+void Heartbeat::Send() {
+  heartbeat_t message{};
+  message.utime = bus_.newest_utime();
+  message.daemon = bus_.daemon();
+  message.build = BuildId();
+  message.types_hash = TypesHash();
+  message.channels = bus_.Health();
+  message.num_channels = static_cast<int32_t>(message.channels.size());
+  bus_.Publish(channels::kHeartbeat, message);
+}
+
+int RunHosted(const std::string& name, int argc, char** argv, const NodeFactory& factory) {
+  CLI::App app("hairpin " + name + ": see daemons/" + name + "/README.md", name);
+  Options options;
+  DefineOptions(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
+  CatchSignals();
+  try {
+    Work(name, options, factory);
+    return 0;
+  } catch (const ConfigError& error) {
+    return Fail(name, error.what(), kExitConfig);
+  } catch (const std::exception& error) {
+    return Fail(name, error.what(), kExitFailure);
+  }
+}
+
+}  // namespace hairpin

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+
+#include "common/bus.hpp"
+#include "common/config.hpp"
+
+namespace hairpin {
+
+inline constexpr int kExitFailure = 1;
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitConfig = 78;  // EX_CONFIG; systemd does not restart it
+
+/// The commit this was built from.
+const char* BuildId();
+
+/// A node of any class, kept alive with its subscriptions. What RunDaemon() runs in a process of its own, and the
+/// simulator's in-process mode next to all others.
+class HostedNode {
+ public:
+  virtual ~HostedNode() = default;
+  /// Calls the node's `Poll()`, if it has one: work that no message causes, such as noticing that none come.
+  virtual void Poll() {}
+  virtual bool has_poll() const { return false; }
+};
+
+using NodeFactory = std::function<std::unique_ptr<HostedNode>(Bus&, const Config&)>;
+
+/// Wraps a function `Node make(Bus&, const Config&)`. Nodes need neither copy nor move.
+template <class Make>
+NodeFactory Host(Make make) {
+  using Node = std::invoke_result_t<Make, Bus&, const Config&>;
+  class Hosted final : public HostedNode {
+   public:
+    Hosted(const Make& make_node, Bus& bus, const Config& config) : node_(make_node(bus, config)) {}
+    void Poll() override {
+      if constexpr (requires(Node& node) { node.Poll(); }) node_.Poll();
+    }
+    bool has_poll() const override {
+      return requires(Node& node) { node.Poll(); };
+    }
+
+   private:
+    Node node_;
+  };
+  return [make](Bus& bus, const Config& config) { return std::make_unique<Hosted>(make, bus, config); };
+}
+
+/// Sends HEARTBEAT each 100 ms of data time. Listens to `bus`'s data time, which it must outlive or be destroyed with.
+class Heartbeat {
+ public:
+  explicit Heartbeat(Bus& bus);
+  /// For when nothing is heard: sends one now.
+  void Send();
+
+ private:
+  void OnDataTime(int64_t utime);
+  Bus& bus_;
+  int64_t last_sent_utime_ = 0;
+};
+
+/// The whole life of a daemon: arguments (--help), signals, config, bus, node, heartbeat, sd_notify from the work loop.
+/// Returns the exit code: 0 after SIGINT or SIGTERM, 1 cannot run, 2 wrong usage, 78 bad config.
+int RunHosted(const std::string& name, int argc, char** argv, const NodeFactory& factory);
+
+template <class Make>
+int RunDaemon(const std::string& name, int argc, char** argv, Make make) {
+  return RunHosted(name, argc, argv, Host(make));
+}
+
+}  // namespace hairpin

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/cone.hpp"
+#include "common/geometry.hpp"
+
+namespace hairpin {
+
+/// A malformed or impossible track: "file:line: reason".
+class TrackError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct TrackCone {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  // map [m]
+  ConeColour colour = ConeColour::kUnknown;
+};
+
+/// A line across the track, by the driver's view.
+struct GateLine {
+  Eigen::Vector2d left = Eigen::Vector2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+};
+
+/// A track marked by cones, in map [m].
+struct Track {
+  std::string name;
+  bool closed = true;            // a lap; false: start and finish differ (acceleration)
+  Pose2 start;                   // T_map_base of the car waiting, before the start line
+  GateLine start_line;
+  GateLine finish_line;          // the same line where closed
+  std::vector<TrackCone> left;   // boundary in driving order from the start line on; blue or orange
+  std::vector<TrackCone> right;  // yellow or orange
+  std::vector<TrackCone> others; // cones that bound nothing, such as large orange ones beside the gate
+  std::vector<Eigen::Vector2d> clutter;  // things beside the track that a pipeline may take for a cone
+};
+
+/// Reads our own YAML, PacSim YAML, FSSIM YAML (told apart by their keys) or EUFS CSV.
+/// Throws TrackError with file, line and reason.
+Track LoadTrack(const std::string& file);
+
+/// Writes our own YAML, which LoadTrack() reads back exactly. Throws std::runtime_error where it cannot write.
+void SaveTrack(const Track& track, const std::string& file);
+
+}  // namespace hairpin
