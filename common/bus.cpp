@@ -9,11 +9,12 @@
 namespace hairpin {
 namespace {
 
-constexpr size_t kMaxSenders = 64;  // on one channel; every daemon sends HEARTBEAT, and may have restarted
-constexpr int kWindow = 64;         // messages that may arrive out of order
-// A time this far ahead of everything heard is a broken clock, unless the channel insists on it: then a replay has begun
-// anew, or the machine has slept.
-constexpr double kMaxJump = 10.0;       // s
+constexpr size_t kMaxSenders =
+    64;                      // on one channel; every daemon sends HEARTBEAT, and may have restarted
+constexpr int kWindow = 64;  // messages that may arrive out of order
+// A time this far ahead of everything heard is a broken clock, unless the channel insists on it:
+// then a replay has begun anew, or the machine has slept.
+constexpr double kMaxJump = 10.0;  // s
 constexpr int kMessagesToInsist = 20;
 
 }  // namespace
@@ -23,7 +24,8 @@ Bus::Bus(Transport& transport, std::string daemon, int64_t boot_id)
 
 Bus::~Bus() = default;
 
-std::string Bus::PayloadProblem(const std::string& type, const uint8_t* data, size_t size, int64_t fingerprint) const {
+std::string Bus::PayloadProblem(const std::string& type, const uint8_t* data, size_t size,
+                                int64_t fingerprint) const {
   if (!HasFingerprint(data, size, fingerprint)) return "is no " + type;
   return WireSchema::Hairpin().Problem(type, data + sizeof(int64_t), size - sizeof(int64_t));
 }
@@ -51,7 +53,8 @@ bool Bus::Accept(Subscription& subscription, int64_t utime, int64_t boot_id, int
 
 bool Bus::IsPlausible(Subscription& subscription, int64_t utime) {
   if (utime < 0) return false;
-  // 0 is a heartbeat that has heard nothing yet; far in the past is merely late, and the node's to judge.
+  // 0 is a heartbeat that has heard nothing yet; far in the past is merely late, and the node's to
+  // judge.
   if (newest_utime_ == 0 || utime == 0 || SecondsBetween(newest_utime_, utime) <= kMaxJump) {
     subscription.implausible_in_a_row = 0;
     return true;
@@ -65,7 +68,8 @@ bool Bus::IsPlausible(Subscription& subscription, int64_t utime) {
 
 bool Bus::IsDuplicate(Subscription& subscription, int64_t boot_id, int64_t sequence) {
   auto& senders = subscription.senders;
-  auto sender = std::find_if(senders.begin(), senders.end(), [boot_id](const Sender& s) { return s.boot_id == boot_id; });
+  auto sender = std::find_if(senders.begin(), senders.end(),
+                             [boot_id](const Sender& s) { return s.boot_id == boot_id; });
   if (sender == senders.end()) {
     if (senders.size() == kMaxSenders) senders.pop_front();
     senders.push_back({boot_id, sequence, 1});
@@ -94,7 +98,8 @@ void Bus::CountUndecodable(Subscription& subscription, const std::string& why) {
 
 void Bus::Refuse(const std::string& channel, const std::string& why) {
   const auto found = subscriptions_.find(channel);
-  if (found == subscriptions_.end()) throw std::logic_error(daemon_ + " refuses a message of " + channel + ", not subscribed");
+  if (found == subscriptions_.end())
+    throw std::logic_error(daemon_ + " refuses a message of " + channel + ", not subscribed");
   ++found->second->health.refused;
   Warn(*found->second, why);
 }

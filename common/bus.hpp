@@ -13,14 +13,16 @@
 
 namespace hairpin {
 
-/// One daemon's place on the transport: typed subscriptions and publications, with everything that is wrong on the wire
-/// counted and dropped before a handler sees it.
+/// One daemon's place on the transport: typed subscriptions and publications, with everything that
+/// is wrong on the wire counted and dropped before a handler sees it.
 ///
-/// Dropped are payloads that do not decode exactly (type, lengths, trailing bytes, NaN), duplicates by (boot id, sequence),
-/// and times that cannot be (more than 10 s ahead of all others, unless the channel insists). Messages out of order pass: what to do with them is the node's.
+/// Dropped are payloads that do not decode exactly (type, lengths, trailing bytes, NaN), duplicates
+/// by (boot id, sequence), and times that cannot be (more than 10 s ahead of all others, unless the
+/// channel insists). Messages out of order pass: what to do with them is the node's.
 class Bus {
  public:
-  /// `boot_id` names this run of the daemon on every message it sends; it must differ between runs on a shared network.
+  /// `boot_id` names this run of the daemon on every message it sends; it must differ between runs
+  /// on a shared network.
   Bus(Transport& transport, std::string daemon, int64_t boot_id);
   ~Bus();
   Bus(const Bus&) = delete;
@@ -34,14 +36,18 @@ class Bus {
   template <class M>
   void Publish(const Channel<M>& channel, M message);
 
-  /// Counts a message that decoded but was refused by the node, and warns on stderr at most once a second of data time.
+  /// Counts a message that decoded but was refused by the node, and warns on stderr at most once a
+  /// second of data time.
   template <class M>
   void Refuse(const Channel<M>& channel, const std::string& why) {
     Refuse(std::string(channel.name), why);
   }
 
-  /// Calls `listener(utime)` whenever a handled message has advanced the data time; after the message's own handler.
-  void OnDataTime(std::function<void(int64_t)> listener) { data_time_listener_ = std::move(listener); }
+  /// Calls `listener(utime)` whenever a handled message has advanced the data time; after the
+  /// message's own handler.
+  void OnDataTime(std::function<void(int64_t)> listener) {
+    data_time_listener_ = std::move(listener);
+  }
 
   /// Newest utime heard on any channel; 0 before the first.
   int64_t newest_utime() const { return newest_utime_; }
@@ -67,7 +73,8 @@ class Bus {
   };
 
   static bool HasFingerprint(const uint8_t* data, size_t size, int64_t fingerprint);
-  std::string PayloadProblem(const std::string& type, const uint8_t* data, size_t size, int64_t fingerprint) const;
+  std::string PayloadProblem(const std::string& type, const uint8_t* data, size_t size,
+                             int64_t fingerprint) const;
   bool IsDuplicate(Subscription& subscription, int64_t boot_id, int64_t sequence);
   bool IsPlausible(Subscription& subscription, int64_t utime);
   bool Accept(Subscription& subscription, int64_t utime, int64_t boot_id, int64_t sequence);
@@ -94,7 +101,8 @@ void Bus::Subscribe(const Channel<M>& channel, Handler handler) {
   subscription.health.channel = channel.name;
   const std::string type = M::getTypeName();
   subscription.raw = transport_.Subscribe(
-      channel.name, [this, &subscription, type, handler](const std::string&, const uint8_t* data, size_t size) {
+      channel.name,
+      [this, &subscription, type, handler](const std::string&, const uint8_t* data, size_t size) {
         const std::string problem = PayloadProblem(type, data, size, M::getHash());
         if (!problem.empty()) return CountUndecodable(subscription, problem);
         M message{};

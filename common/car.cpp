@@ -4,8 +4,8 @@ namespace hairpin {
 
 std::array<Eigen::Vector2d, 4> Car::wheel_positions() const {
   const double half = 0.5 * track_width;
-  return {Eigen::Vector2d(front_axle, half), Eigen::Vector2d(front_axle, -half), Eigen::Vector2d(-rear_axle, half),
-          Eigen::Vector2d(-rear_axle, -half)};
+  return {Eigen::Vector2d(front_axle, half), Eigen::Vector2d(front_axle, -half),
+          Eigen::Vector2d(-rear_axle, half), Eigen::Vector2d(-rear_axle, -half)};
 }
 
 Car LoadCar(const Config& config) {

@@ -7,22 +7,23 @@
 
 namespace hairpin {
 
-/// Geometry and limits of the car, `config/car.yaml`: what more than one daemon needs to know of it. SI; positions in base.
+/// Geometry and limits of the car, `config/car.yaml`: what more than one daemon needs to know of
+/// it. SI; positions in base.
 struct Car {
   double mass = 0.0;
-  double yaw_inertia = 0.0;          // kg m^2
+  double yaw_inertia = 0.0;  // kg m^2
   double cog_height = 0.0;
-  double front_axle = 0.0;           // distance of the axles from the centre of gravity, both positive
+  double front_axle = 0.0;  // distance of the axles from the centre of gravity, both positive
   double rear_axle = 0.0;
-  double track_width = 0.0;          // between the wheels of an axle
+  double track_width = 0.0;  // between the wheels of an axle
   double wheel_radius = 0.0;
-  double front_overhang = 0.0;       // body beyond the centre of gravity, ahead and behind
+  double front_overhang = 0.0;  // body beyond the centre of gravity, ahead and behind
   double rear_overhang = 0.0;
   double body_width = 0.0;
-  double max_steering_angle = 0.0;   // of the front wheels
-  double max_wheel_torque = 0.0;     // one motor, at the wheel, driving and regenerating
-  double max_brake_force = 0.0;      // both axles together at full brake, at the tyres
-  double front_brake_share = 0.0;    // 0 to 1
+  double max_steering_angle = 0.0;  // of the front wheels
+  double max_wheel_torque = 0.0;    // one motor, at the wheel, driving and regenerating
+  double max_brake_force = 0.0;     // both axles together at full brake, at the tyres
+  double front_brake_share = 0.0;   // 0 to 1
   Eigen::Vector2d ground_speed_position = Eigen::Vector2d::Zero();
   Eigen::Vector2d gnss_position = Eigen::Vector2d::Zero();
 

@@ -22,8 +22,8 @@
 
 namespace hairpin {
 
-/// A channel of the car: its name, the message that travels on it, how often it does, and after which time without one
-/// it is stale. Code, watchdog, logger and docs read this one table.
+/// A channel of the car: its name, the message that travels on it, how often it does, and after
+/// which time without one it is stale. Code, watchdog, logger and docs read this one table.
 template <class M>
 struct Channel {
   using Message = M;
@@ -79,7 +79,8 @@ void ForEachChannel(Visitor&& visit) {
   visit(channels::kTruthTrack);
 }
 
-/// One number over the fingerprints of all channels: two daemons that differ in it cannot understand each other.
+/// One number over the fingerprints of all channels: two daemons that differ in it cannot
+/// understand each other.
 int64_t TypesHash();
 
 }  // namespace hairpin

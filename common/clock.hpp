@@ -8,7 +8,8 @@ namespace hairpin {
 double SecondsBetween(int64_t earlier_utime, int64_t later_utime);
 int64_t AddSeconds(int64_t utime, double seconds);
 
-/// A monotonic wall clock. Only drivers, the CAN deadman and the watchdog own one, and it is injected.
+/// A monotonic wall clock. Only drivers, the CAN deadman and the watchdog own one, and it is
+/// injected.
 class Clock {
  public:
   virtual ~Clock() = default;

@@ -9,7 +9,8 @@
 namespace hairpin {
 namespace {
 
-constexpr std::array<std::string_view, kNumConeColours> kNames{"unknown", "blue", "yellow", "orange", "orange_large"};
+constexpr std::array<std::string_view, kNumConeColours> kNames{"unknown", "blue", "yellow",
+                                                               "orange", "orange_large"};
 constexpr double kMaxDistance = 200.0;
 
 }  // namespace
@@ -19,7 +20,8 @@ double ProbabilityOf(const ColourDistribution& distribution, ConeColour colour) 
 }
 
 ConeColour MostProbable(const ColourDistribution& distribution) {
-  return static_cast<ConeColour>(std::max_element(distribution.begin(), distribution.end()) - distribution.begin());
+  return static_cast<ConeColour>(std::max_element(distribution.begin(), distribution.end()) -
+                                 distribution.begin());
 }
 
 std::optional<ColourDistribution> Normalised(const ColourDistribution& weights) {
@@ -43,13 +45,14 @@ std::optional<ConeColour> ConeColourFromName(std::string_view name) {
 std::optional<ConeObservation> ToConeObservation(const cone_observation_t& message) {
   ConeObservation observation;
   observation.position = {message.x_m, message.y_m};
-  observation.covariance << message.covariance_xx_m2, message.covariance_xy_m2, message.covariance_xy_m2,
-      message.covariance_yy_m2;
+  observation.covariance << message.covariance_xx_m2, message.covariance_xy_m2,
+      message.covariance_xy_m2, message.covariance_yy_m2;
   ColourDistribution weights{};
   std::copy(std::begin(message.probability), std::end(message.probability), weights.begin());
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   const std::optional<ColourDistribution> colour = Normalised(weights);
-  if (!(observation.position.norm() < kMaxDistance) || !IsCovariance(observation.covariance)) return std::nullopt;
+  if (!(observation.position.norm() < kMaxDistance) || !IsCovariance(observation.covariance))
+    return std::nullopt;
   if (!colour || std::abs(sum - 1.0) > 0.01) return std::nullopt;
   observation.colour = *colour;
   return observation;
@@ -62,7 +65,8 @@ cone_observation_t ToMessage(const ConeObservation& observation) {
   message.covariance_xx_m2 = observation.covariance(0, 0);
   message.covariance_xy_m2 = observation.covariance(0, 1);
   message.covariance_yy_m2 = observation.covariance(1, 1);
-  for (size_t i = 0; i < observation.colour.size(); ++i) message.probability[i] = static_cast<float>(observation.colour[i]);
+  for (size_t i = 0; i < observation.colour.size(); ++i)
+    message.probability[i] = static_cast<float>(observation.colour[i]);
   return message;
 }
 

@@ -9,8 +9,8 @@
 
 namespace hairpin {
 
-/// Colour classes, numbered as on the wire. Blue is left, yellow is right by the driver's view, small orange marks entry
-/// and exit lanes, large orange the start/finish line.
+/// Colour classes, numbered as on the wire. Blue is left, yellow is right by the driver's view,
+/// small orange marks entry and exit lanes, large orange the start/finish line.
 enum class ConeColour { kUnknown = 0, kBlue = 1, kYellow = 2, kOrange = 3, kOrangeLarge = 4 };
 inline constexpr int kNumConeColours = 5;
 
@@ -32,13 +32,14 @@ std::optional<ConeColour> ConeColourFromName(std::string_view name);
 
 /// One cone as a pipeline sees it.
 struct ConeObservation {
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();         // base [m]
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();   // base [m^2]
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();        // base [m]
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  // base [m^2]
   ColourDistribution colour = kColourUnknown;
 };
 
-/// Checked conversion from the wire. Empty where the covariance is not positive definite, the probabilities are no
-/// distribution (within 1 %), or the position is beyond 200 m, which no sensor here reaches.
+/// Checked conversion from the wire. Empty where the covariance is not positive definite, the
+/// probabilities are no distribution (within 1 %), or the position is beyond 200 m, which no sensor
+/// here reaches.
 std::optional<ConeObservation> ToConeObservation(const cone_observation_t& message);
 cone_observation_t ToMessage(const ConeObservation& observation);
 

@@ -24,7 +24,8 @@ struct Config::Document {
   std::vector<std::shared_ptr<Level>> levels;
   std::vector<std::string> problems;
 
-  std::shared_ptr<Level> AddLevel(const YAML::Node& node, const std::string& file, const std::string& path);
+  std::shared_ptr<Level> AddLevel(const YAML::Node& node, const std::string& file,
+                                  const std::string& path);
   void Report(const Level& level, int line, const std::string& what) {
     problems.push_back(level.file + ":" + std::to_string(line) + ": " + what);
   }
@@ -49,7 +50,9 @@ std::string Describe(const YAML::Node& node) {
   return node.IsSequence() ? "a list" : node.IsMap() ? "a section" : "nothing";
 }
 
-double Within(const Range& range) { return std::isfinite(range.min) ? range.min : std::isfinite(range.max) ? range.max : 0.0; }
+double Within(const Range& range) {
+  return std::isfinite(range.min) ? range.min : std::isfinite(range.max) ? range.max : 0.0;
+}
 
 YAML::Node Parse(const std::string& text, const std::string& file) {
   try {
@@ -67,13 +70,14 @@ std::string ReadFile(const std::string& file) {
   return text.str();
 }
 
-void Override(YAML::Node root, const std::string& assignment) {
+void Override(const YAML::Node& root, const std::string& assignment) {
   const size_t equals = assignment.find('=');
   if (equals == std::string::npos) throw ConfigError("--set " + assignment + ": is not key=value");
   std::istringstream keys(assignment.substr(0, equals));
   YAML::Node node = root;
   for (std::string key; std::getline(keys, key, '.');) {
-    if (!node.IsMap() || !node[key]) throw ConfigError("--set " + assignment + ": the file has no key " + key);
+    if (!node.IsMap() || !node[key])
+      throw ConfigError("--set " + assignment + ": the file has no key " + key);
     node.reset(node[key]);
   }
   node = Parse(assignment.substr(equals + 1), "--set " + assignment);
@@ -102,7 +106,8 @@ std::string Nearest(std::string_view word, const std::vector<std::string>& candi
   return nearest;
 }
 
-std::shared_ptr<Config::Level> Config::Document::AddLevel(const YAML::Node& node, const std::string& file,
+std::shared_ptr<Config::Level> Config::Document::AddLevel(const YAML::Node& node,
+                                                          const std::string& file,
                                                           const std::string& path) {
   auto level = std::make_shared<Level>();
   level->file = file;
@@ -138,7 +143,8 @@ YAML::Node MappingOf(const std::string& text, const std::string& file) {
 
 }  // namespace
 
-Config Config::Load(const std::string& directory, const std::string& name, const std::vector<std::string>& overrides) {
+Config Config::Load(const std::string& directory, const std::string& name,
+                    const std::vector<std::string>& overrides) {
   const std::string file = directory + "/" + name + ".yaml";
   const YAML::Node root = MappingOf(ReadFile(file), file);
   for (const std::string& assignment : overrides) Override(root, assignment);
@@ -146,7 +152,8 @@ Config Config::Load(const std::string& directory, const std::string& name, const
   return Config(document, document->AddLevel(root, file, ""));
 }
 
-Config Config::FromText(const std::string& text, const std::string& file, const std::string& directory) {
+Config Config::FromText(const std::string& text, const std::string& file,
+                        const std::string& directory) {
   auto document = NewDocument(directory);
   return Config(document, document->AddLevel(MappingOf(text, file), file, ""));
 }
@@ -186,11 +193,13 @@ double Config::Number(const std::string& key, const Range& range) const {
   if (!node.IsDefined()) return Within(range);
   double value = 0.0;
   if (!Read(node, &value) || !std::isfinite(value)) {
-    document_->Report(*level_, line, level_->path + key + ": " + Describe(node) + " is no finite number");
+    document_->Report(*level_, line,
+                      level_->path + key + ": " + Describe(node) + " is no finite number");
     return Within(range);
   }
   if (value < range.min || value > range.max) {
-    document_->Report(*level_, line, level_->path + key + ": " + Describe(node) + " must be " + Describe(range));
+    document_->Report(*level_, line,
+                      level_->path + key + ": " + Describe(node) + " must be " + Describe(range));
     return Within(range);
   }
   return value;
@@ -207,7 +216,8 @@ int Config::Integer(const std::string& key, int min, int max) const {
   }
   if (value < min || value > max) {
     const Range range{static_cast<double>(min), static_cast<double>(max)};
-    document_->Report(*level_, line, level_->path + key + ": " + Describe(node) + " must be " + Describe(range));
+    document_->Report(*level_, line,
+                      level_->path + key + ": " + Describe(node) + " must be " + Describe(range));
     return min;
   }
   return value;
@@ -218,7 +228,8 @@ bool Config::Flag(const std::string& key) const {
   const YAML::Node node = Find(*document_, *level_, key, &line);
   bool value = false;
   if (node.IsDefined() && !Read(node, &value)) {
-    document_->Report(*level_, line, level_->path + key + ": " + Describe(node) + " is neither true nor false");
+    document_->Report(*level_, line,
+                      level_->path + key + ": " + Describe(node) + " is neither true nor false");
   }
   return value;
 }
@@ -241,14 +252,18 @@ std::vector<double> Config::Numbers(const std::string& key, size_t size, const R
   if (!node.IsDefined()) return values;
   if (!node.IsSequence() || node.size() == 0 || (size > 0 && node.size() != size)) {
     const std::string wanted = size > 0 ? std::to_string(size) : std::string("at least one");
-    document_->Report(*level_, line, level_->path + key + ": must be a list of " + wanted + " numbers");
+    document_->Report(*level_, line,
+                      level_->path + key + ": must be a list of " + wanted + " numbers");
     return values;
   }
   values.resize(node.size());
   for (size_t i = 0; i < node.size(); ++i) {
-    if (Read(node[i], &values[i]) && std::isfinite(values[i]) && values[i] >= range.min && values[i] <= range.max) continue;
+    if (Read(node[i], &values[i]) && std::isfinite(values[i]) && values[i] >= range.min &&
+        values[i] <= range.max)
+      continue;
     document_->Report(*level_, node[i].Mark().line + 1,
-                      level_->path + key + "[" + std::to_string(i) + "]: " + Describe(node[i]) + " must be a number " + Describe(range));
+                      level_->path + key + "[" + std::to_string(i) + "]: " + Describe(node[i]) +
+                          " must be a number " + Describe(range));
     values[i] = Within(range);
   }
   return values;
@@ -272,7 +287,8 @@ void Config::Finish() const {
       if (level->asked.contains(key)) continue;
       const std::string nearest = Nearest(key, known);
       const std::string hint = nearest.empty() ? "" : " (did you mean " + nearest + "?)";
-      problems.push_back(level->file + ":" + std::to_string(value.second) + ": " + level->path + key + ": unknown key" + hint);
+      problems.push_back(level->file + ":" + std::to_string(value.second) + ": " + level->path +
+                         key + ": unknown key" + hint);
     }
   }
   if (problems.empty()) return;

@@ -21,9 +21,10 @@ struct Range {
   double max = std::numeric_limits<double>::infinity();
 };
 
-/// Strict reading of a YAML file. Every key must be there, once, of its type and within its range, and every key of the
-/// file must have been read. Problems are collected; `Finish()` throws all of them at once. Until then a failed read
-/// returns a value within its range, so that reading can go on.
+/// Strict reading of a YAML file. Every key must be there, once, of its type and within its range,
+/// and every key of the file must have been read. Problems are collected; `Finish()` throws all of
+/// them at once. Until then a failed read returns a value within its range, so that reading can go
+/// on.
 ///
 ///     LocalMapParams LoadLocalMapParams(const Config& config) {
 ///       LocalMapParams params;
@@ -33,11 +34,15 @@ struct Range {
 ///     }
 class Config {
  public:
-  /// Reads `directory/name.yaml`. `overrides` are "key=value", dots between the levels, and replace values of keys that
-  /// the file has. Throws ConfigError where the file cannot be read or is no YAML mapping.
-  static Config Load(const std::string& directory, const std::string& name, const std::vector<std::string>& overrides = {});
-  /// The same from text; `file` is what problems call it. Siblings are then looked for in `directory`.
-  static Config FromText(const std::string& text, const std::string& file, const std::string& directory = ".");
+  /// Reads `directory/name.yaml`. `overrides` are "key=value", dots between the levels, and replace
+  /// values of keys that the file has. Throws ConfigError where the file cannot be read or is no
+  /// YAML mapping.
+  static Config Load(const std::string& directory, const std::string& name,
+                     const std::vector<std::string>& overrides = {});
+  /// The same from text; `file` is what problems call it. Siblings are then looked for in
+  /// `directory`.
+  static Config FromText(const std::string& text, const std::string& file,
+                         const std::string& directory = ".");
 
   /// Another file of the same folder, such as "car". Its problems are reported with these.
   Config Sibling(const std::string& name) const;
@@ -51,7 +56,8 @@ class Config {
   Config Section(const std::string& key) const;
   bool Has(const std::string& key) const;
 
-  /// Throws ConfigError with all problems so far and every key, of all files read, that nobody asked for.
+  /// Throws ConfigError with all problems so far and every key, of all files read, that nobody
+  /// asked for.
   void Finish() const;
 
   struct Document;  // for the implementation
@@ -63,7 +69,8 @@ class Config {
   std::shared_ptr<Level> level_;
 };
 
-/// The candidate nearest to `word` by edit distance, if near enough to be a slip of the pen; else empty.
+/// The candidate nearest to `word` by edit distance, if near enough to be a slip of the pen; else
+/// empty.
 std::string Nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace hairpin

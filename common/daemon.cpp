@@ -40,9 +40,15 @@ struct Options {
 };
 
 void DefineOptions(CLI::App& app, Options& options) {
-  app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")->capture_default_str()->envname("HAIRPIN_CONFIG_DIR");
-  app.add_option("--lcm-url", options.lcm_url, "LCM provider")->capture_default_str()->envname("LCM_DEFAULT_URL");
-  app.add_option("--set", options.overrides, "KEY=VALUE in place of the config file's value (repeatable)")->allow_extra_args(false);
+  app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")
+      ->capture_default_str()
+      ->envname("HAIRPIN_CONFIG_DIR");
+  app.add_option("--lcm-url", options.lcm_url, "LCM provider")
+      ->capture_default_str()
+      ->envname("LCM_DEFAULT_URL");
+  app.add_option("--set", options.overrides,
+                 "KEY=VALUE in place of the config file's value (repeatable)")
+      ->allow_extra_args(false);
   app.set_version_flag("--version", BuildId());
 }
 

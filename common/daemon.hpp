@@ -18,12 +18,13 @@ inline constexpr int kExitConfig = 78;  // EX_CONFIG; systemd does not restart i
 /// The commit this was built from.
 const char* BuildId();
 
-/// A node of any class, kept alive with its subscriptions. What RunDaemon() runs in a process of its own, and the
-/// simulator's in-process mode next to all others.
+/// A node of any class, kept alive with its subscriptions. What RunDaemon() runs in a process of
+/// its own, and the simulator's in-process mode next to all others.
 class HostedNode {
  public:
   virtual ~HostedNode() = default;
-  /// Calls the node's `Poll()`, if it has one: work that no message causes, such as noticing that none come.
+  /// Calls the node's `Poll()`, if it has one: work that no message causes, such as noticing that
+  /// none come.
   virtual void Poll() {}
   virtual bool has_poll() const { return false; }
 };
@@ -38,19 +39,22 @@ NodeFactory Host(Make make) {
    public:
     Hosted(const Make& make_node, Bus& bus, const Config& config) : node_(make_node(bus, config)) {}
     void Poll() override {
-      if constexpr (requires(Node& node) { node.Poll(); }) node_.Poll();
+      if constexpr (requires(Node & node) { node.Poll(); }) node_.Poll();
     }
     bool has_poll() const override {
-      return requires(Node& node) { node.Poll(); };
+      return requires(Node & node) { node.Poll(); };
     }
 
    private:
     Node node_;
   };
-  return [make](Bus& bus, const Config& config) { return std::make_unique<Hosted>(make, bus, config); };
+  return [make](Bus& bus, const Config& config) {
+    return std::make_unique<Hosted>(make, bus, config);
+  };
 }
 
-/// Sends HEARTBEAT each 100 ms of data time. Listens to `bus`'s data time, which it must outlive or be destroyed with.
+/// Sends HEARTBEAT each 100 ms of data time. Listens to `bus`'s data time, which it must outlive or
+/// be destroyed with.
 class Heartbeat {
  public:
   explicit Heartbeat(Bus& bus);
@@ -63,8 +67,9 @@ class Heartbeat {
   int64_t last_sent_utime_ = 0;
 };
 
-/// The whole life of a daemon: arguments (--help), signals, config, bus, node, heartbeat, sd_notify from the work loop.
-/// Returns the exit code: 0 after SIGINT or SIGTERM, 1 cannot run, 2 wrong usage, 78 bad config.
+/// The whole life of a daemon: arguments (--help), signals, config, bus, node, heartbeat, sd_notify
+/// from the work loop. Returns the exit code: 0 after SIGINT or SIGTERM, 1 cannot run, 2 wrong
+/// usage, 78 bad config.
 int RunHosted(const std::string& name, int argc, char** argv, const NodeFactory& factory);
 
 template <class Make>

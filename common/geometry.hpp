@@ -7,8 +7,9 @@ namespace hairpin {
 /// The same angle in (-pi, pi] [rad]. Any finite input.
 double WrapAngle(double angle);
 
-/// A pose or rigid transform in the plane. `T_local_base` takes base coordinates to local coordinates:
-/// `point_local = T_local_base * point_base`. Positions in m, yaw counter-clockwise in rad, kept in (-pi, pi].
+/// A pose or rigid transform in the plane. `T_local_base` takes base coordinates to local
+/// coordinates: `point_local = T_local_base * point_base`. Positions in m, yaw counter-clockwise in
+/// rad, kept in (-pi, pi].
 struct Pose2 {
   double x = 0.0;
   double y = 0.0;
@@ -32,8 +33,9 @@ struct Twist2 {
   double yaw_rate = 0.0;
 };
 
-/// T_start_end of a body that moves with constant `velocity` for `duration` [s]: the exponential map of SE(2).
-/// Exact for constant velocity, stable for a yaw rate near zero; negative durations go back in time.
+/// T_start_end of a body that moves with constant `velocity` for `duration` [s]: the exponential
+/// map of SE(2). Exact for constant velocity, stable for a yaw rate near zero; negative durations
+/// go back in time.
 Pose2 Integrate(const Twist2& velocity, double duration);
 
 /// Covariance turned by yaw: R P R^T.

@@ -31,14 +31,16 @@ bool PoseHistory::Add(int64_t utime, const Twist2& velocity) {
   distance_ += std::hypot(mean.vx, mean.vy) * dt;
   samples_.push_back({utime, last.T_local_base * Integrate(mean, dt), velocity});
   // One sample older than the duration stays, so that the whole duration can be interpolated.
-  while (samples_.size() > 2 && SecondsBetween(samples_[1].utime, utime) > duration_) samples_.pop_front();
+  while (samples_.size() > 2 && SecondsBetween(samples_[1].utime, utime) > duration_)
+    samples_.pop_front();
   return true;
 }
 
 std::optional<Pose2> PoseHistory::At(int64_t utime) const {
   if (empty() || utime < samples_.front().utime) return std::nullopt;
-  const auto after = std::upper_bound(samples_.begin(), samples_.end(), utime,
-                                      [](int64_t t, const Sample& sample) { return t < sample.utime; });
+  const auto after =
+      std::upper_bound(samples_.begin(), samples_.end(), utime,
+                       [](int64_t t, const Sample& sample) { return t < sample.utime; });
   const Sample& before = *std::prev(after);
   const double dt = SecondsBetween(before.utime, utime);
   if (after == samples_.end()) {

@@ -8,19 +8,21 @@
 
 namespace hairpin {
 
-/// Dead reckoning: poses of base in local, by integration of the velocity from {0, 0, 0} [paper III-C, local map].
-/// Keeps the last `duration` seconds, so that a delayed observation finds the pose of its own time.
+/// Dead reckoning: poses of base in local, by integration of the velocity from {0, 0, 0} [paper
+/// III-C, local map]. Keeps the last `duration` seconds, so that a delayed observation finds the
+/// pose of its own time.
 class PoseHistory {
  public:
   /// Throws std::invalid_argument unless duration > 0.
   explicit PoseHistory(double duration_s);
 
-  /// Moves to `utime` with the mean of the last and this velocity (trapezoidal). Returns false, and changes nothing, where
-  /// `utime` does not increase.
+  /// Moves to `utime` with the mean of the last and this velocity (trapezoidal). Returns false, and
+  /// changes nothing, where `utime` does not increase.
   bool Add(int64_t utime, const Twist2& velocity);
 
-  /// T_local_base at `utime`, interpolated along the arc driven. Up to `kMaxExtrapolation` past the newest velocity it
-  /// goes on with that velocity. Empty: before the history, too far past it, or no velocity yet.
+  /// T_local_base at `utime`, interpolated along the arc driven. Up to `kMaxExtrapolation` past the
+  /// newest velocity it goes on with that velocity. Empty: before the history, too far past it, or
+  /// no velocity yet.
   std::optional<Pose2> At(int64_t utime) const;
 
   bool empty() const { return samples_.empty(); }

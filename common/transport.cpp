@@ -39,15 +39,17 @@ class Transport::RawSubscription {
 
 Transport::Transport(const std::string& url) : url_(url), lcm_(url) {
   if (lcm_.good()) return;
-  throw std::runtime_error("cannot open " + url +
-                           " (is there a multicast route? `ip link set lo up; ip route add 224.0.0.0/4 dev lo`)");
+  throw std::runtime_error(
+      "cannot open " + url +
+      " (is there a multicast route? `ip link set lo up; ip route add 224.0.0.0/4 dev lo`)");
 }
 
 bool Transport::Handle(int timeout_ms) {
   const int handled = lcm_.handleTimeout(timeout_ms);
   if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
   // An interrupted wait is how Ctrl-C looks from here; the caller's loop knows what to do.
-  if (handled < 0 && errno != EINTR) throw std::runtime_error(url_ + ": receiving failed: " + std::strerror(errno));
+  if (handled < 0 && errno != EINTR)
+    throw std::runtime_error(url_ + ": receiving failed: " + std::strerror(errno));
   return handled > 0;
 }
 
@@ -56,13 +58,15 @@ void Transport::Drain() {
   }
 }
 
-std::shared_ptr<Transport::RawSubscription> Transport::Subscribe(const std::string& channel_regex, RawHandler handler) {
+std::shared_ptr<Transport::RawSubscription> Transport::Subscribe(const std::string& channel_regex,
+                                                                 RawHandler handler) {
   return std::make_shared<RawSubscription>(*this, channel_regex, std::move(handler));
 }
 
 void Transport::Publish(const std::string& channel, const uint8_t* data, size_t size) {
   if (lcm_.publish(channel, data, static_cast<unsigned>(size)) != 0) {
-    throw std::runtime_error(url_ + ": publishing " + std::to_string(size) + " bytes on " + channel + " failed");
+    throw std::runtime_error(url_ + ": publishing " + std::to_string(size) + " bytes on " +
+                             channel + " failed");
   }
 }
 

@@ -33,7 +33,8 @@ int64_t ReadSigned(const uint8_t* data, size_t size) {
 bool AllFinite(const uint8_t* data, size_t count, size_t size) {
   for (size_t i = 0; i < count; ++i, data += size) {
     const uint64_t bits = ReadUnsigned(data, size);
-    const double value = size == 8 ? std::bit_cast<double>(bits) : std::bit_cast<float>(static_cast<uint32_t>(bits));
+    const double value =
+        size == 8 ? std::bit_cast<double>(bits) : std::bit_cast<float>(static_cast<uint32_t>(bits));
     if (!std::isfinite(value)) return false;
   }
   return true;
@@ -52,7 +53,8 @@ void WireSchema::Parse(std::string_view text) {
   static const std::regex kStruct(R"(struct\s+(\w+)\s*\{([^}]*)\})");
   static const std::regex kStatement(R"(\s*(const\s+)?([\w.]+)\s+([^;]*?)\s*;)");
   const std::string source(text);
-  for (std::sregex_iterator match(source.begin(), source.end(), kStruct), end; match != end; ++match) {
+  for (std::sregex_iterator match(source.begin(), source.end(), kStruct), end; match != end;
+       ++match) {
     std::vector<Field> fields;
     const std::string body = (*match)[2];
     for (std::sregex_iterator line(body.begin(), body.end(), kStatement); line != end; ++line) {
@@ -64,7 +66,8 @@ void WireSchema::Parse(std::string_view text) {
   for (const auto& [name, fields] : structs_) {
     for (const Field& field : fields) {
       if (field.kind == Kind::kStruct && !structs_.contains(field.struct_name)) {
-        throw std::invalid_argument("message " + name + ": field " + field.name + " has unknown type " + field.struct_name);
+        throw std::invalid_argument("message " + name + ": field " + field.name +
+                                    " has unknown type " + field.struct_name);
       }
     }
   }
@@ -73,20 +76,24 @@ void WireSchema::Parse(std::string_view text) {
 WireSchema::Field WireSchema::ParseField(const std::string& type, const std::string& declarator,
                                          const std::vector<Field>& before) const {
   static const std::map<std::string, std::pair<Kind, size_t>> kPrimitives{
-      {"int8_t", {Kind::kInteger, 1}},  {"int16_t", {Kind::kInteger, 2}}, {"int32_t", {Kind::kInteger, 4}},
-      {"int64_t", {Kind::kInteger, 8}}, {"byte", {Kind::kInteger, 1}},    {"float", {Kind::kFloat, 4}},
-      {"double", {Kind::kDouble, 8}},   {"boolean", {Kind::kBoolean, 1}}, {"string", {Kind::kString, 0}}};
+      {"int8_t", {Kind::kInteger, 1}},  {"int16_t", {Kind::kInteger, 2}},
+      {"int32_t", {Kind::kInteger, 4}}, {"int64_t", {Kind::kInteger, 8}},
+      {"byte", {Kind::kInteger, 1}},    {"float", {Kind::kFloat, 4}},
+      {"double", {Kind::kDouble, 8}},   {"boolean", {Kind::kBoolean, 1}},
+      {"string", {Kind::kString, 0}}};
   static const std::regex kDeclarator(R"((\w+)((?:\s*\[\s*\w+\s*\])*))");
   static const std::regex kLength(R"(\w+)");
 
   std::smatch match;
-  if (!std::regex_match(declarator, match, kDeclarator)) throw std::invalid_argument("message field not understood: " + declarator);
+  if (!std::regex_match(declarator, match, kDeclarator))
+    throw std::invalid_argument("message field not understood: " + declarator);
   const auto primitive = kPrimitives.find(type);
   Field field{match[1], Kind::kStruct, 0, type.substr(type.rfind('.') + 1), {}};
   if (primitive != kPrimitives.end()) std::tie(field.kind, field.size) = primitive->second;
 
   const std::string lengths = match[2];
-  for (std::sregex_iterator length(lengths.begin(), lengths.end(), kLength), end; length != end; ++length) {
+  for (std::sregex_iterator length(lengths.begin(), lengths.end(), kLength), end; length != end;
+       ++length) {
     const std::string word = length->str();
     if (std::isdigit(static_cast<unsigned char>(word[0]))) {
       field.dimensions.push_back({std::stoll(word), -1});
@@ -96,7 +103,9 @@ WireSchema::Field WireSchema::ParseField(const std::string& type, const std::str
     for (size_t i = 0; i < before.size(); ++i) {
       if (before[i].name == word) index = static_cast<int>(i);
     }
-    if (index < 0) throw std::invalid_argument("message field " + declarator + ": no field " + word + " stands before it");
+    if (index < 0)
+      throw std::invalid_argument("message field " + declarator + ": no field " + word +
+                                  " stands before it");
     field.dimensions.push_back({0, index});
   }
   return field;
@@ -117,27 +126,35 @@ std::string WireSchema::CheckStruct(const std::string& type, Cursor& cursor, int
     const Field& field = fields[i];
     int64_t count = 1;
     for (const Dimension& dimension : field.dimensions) {
-      const int64_t length =
-          dimension.length_field < 0 ? dimension.constant : values[static_cast<size_t>(dimension.length_field)];
+      const int64_t length = dimension.length_field < 0
+                                 ? dimension.constant
+                                 : values[static_cast<size_t>(dimension.length_field)];
       if (length < 0) return "negative length of " + field.name;
-      // Every element takes at least one byte, so more elements than bytes cannot be; this also keeps the product small.
-      if (length > static_cast<int64_t>(cursor.left)) return "length of " + field.name + " exceeds the payload";
+      // Every element takes at least one byte, so more elements than bytes cannot be; this also
+      // keeps the product small.
+      if (length > static_cast<int64_t>(cursor.left))
+        return "length of " + field.name + " exceeds the payload";
       count *= length;
-      if (count > static_cast<int64_t>(cursor.left)) return "length of " + field.name + " exceeds the payload";
+      if (count > static_cast<int64_t>(cursor.left))
+        return "length of " + field.name + " exceeds the payload";
     }
     const Cursor start = cursor;
-    if (std::string problem = CheckField(field, count, cursor, depth); !problem.empty()) return problem;
-    if (field.kind == Kind::kInteger && field.dimensions.empty()) values[i] = ReadSigned(start.data, field.size);
+    if (std::string problem = CheckField(field, count, cursor, depth); !problem.empty())
+      return problem;
+    if (field.kind == Kind::kInteger && field.dimensions.empty())
+      values[i] = ReadSigned(start.data, field.size);
   }
   return {};
 }
 
-std::string WireSchema::CheckField(const Field& field, int64_t count, Cursor& cursor, int depth) const {
+std::string WireSchema::CheckField(const Field& field, int64_t count, Cursor& cursor,
+                                   int depth) const {
   const auto elements = static_cast<size_t>(count);
   if (field.kind == Kind::kStruct || field.kind == Kind::kString) {
     for (size_t i = 0; i < elements; ++i) {
-      std::string problem =
-          field.kind == Kind::kString ? CheckString(cursor) : CheckStruct(field.struct_name, cursor, depth + 1);
+      std::string problem = field.kind == Kind::kString
+                                ? CheckString(cursor)
+                                : CheckStruct(field.struct_name, cursor, depth + 1);
       if (!problem.empty()) return field.name + ": " + problem;
     }
     return {};
@@ -159,9 +176,11 @@ std::string WireSchema::CheckField(const Field& field, int64_t count, Cursor& cu
 std::string WireSchema::CheckString(Cursor& cursor) const {
   if (cursor.left < 4) return "truncated";
   const int64_t length = ReadSigned(cursor.data, 4);  // counts the terminating zero
-  if (length < 1 || length > static_cast<int64_t>(cursor.left) - 4) return "string length exceeds the payload";
+  if (length < 1 || length > static_cast<int64_t>(cursor.left) - 4)
+    return "string length exceeds the payload";
   const auto bytes = static_cast<size_t>(length);
-  if (std::memchr(cursor.data + 4, 0, bytes) != cursor.data + 4 + bytes - 1) return "string not terminated";
+  if (std::memchr(cursor.data + 4, 0, bytes) != cursor.data + 4 + bytes - 1)
+    return "string not terminated";
   cursor.data += 4 + bytes;
   cursor.left -= 4 + bytes;
   return {};

@@ -9,8 +9,9 @@
 
 namespace hairpin {
 
-/// The layout of messages on the wire, read from their .lcm definitions. LCM's generated decoders trust the array lengths
-/// that stand in the bytes; this walks the bytes first, so that a hostile count allocates nothing.
+/// The layout of messages on the wire, read from their .lcm definitions. LCM's generated decoders
+/// trust the array lengths that stand in the bytes; this walks the bytes first, so that a hostile
+/// count allocates nothing.
 class WireSchema {
  public:
   /// Reads any number of definitions (the text of .lcm files, one after another).
@@ -20,9 +21,10 @@ class WireSchema {
   /// The schema of all of hairpin's messages.
   static const WireSchema& Hairpin();
 
-  /// Checks a payload (behind its 8-byte fingerprint) against `type`, such as "cones_t": every length within the payload,
-  /// every float finite, every string terminated, every boolean 0 or 1, no byte left over.
-  /// Returns what is wrong, empty if nothing. Throws std::out_of_range for an unknown type.
+  /// Checks a payload (behind its 8-byte fingerprint) against `type`, such as "cones_t": every
+  /// length within the payload, every float finite, every string terminated, every boolean 0 or 1,
+  /// no byte left over. Returns what is wrong, empty if nothing. Throws std::out_of_range for an
+  /// unknown type.
   std::string Problem(const std::string& type, const uint8_t* data, size_t size) const;
 
  private:
@@ -44,7 +46,8 @@ class WireSchema {
   };
 
   void Parse(std::string_view text);
-  Field ParseField(const std::string& type, const std::string& declarator, const std::vector<Field>& before) const;
+  Field ParseField(const std::string& type, const std::string& declarator,
+                   const std::vector<Field>& before) const;
   std::string CheckStruct(const std::string& type, Cursor& cursor, int depth) const;
   std::string CheckField(const Field& field, int64_t count, Cursor& cursor, int depth) const;
   std::string CheckString(Cursor& cursor) const;

@@ -31,21 +31,24 @@ struct GateLine {
 /// A track marked by cones, in map [m].
 struct Track {
   std::string name;
-  bool closed = true;            // a lap; false: start and finish differ (acceleration)
-  Pose2 start;                   // T_map_base of the car waiting, before the start line
+  bool closed = true;  // a lap; false: start and finish differ (acceleration)
+  Pose2 start;         // T_map_base of the car waiting, before the start line
   GateLine start_line;
   GateLine finish_line;          // the same line where closed
   std::vector<TrackCone> left;   // boundary in driving order from the start line on; blue or orange
   std::vector<TrackCone> right;  // yellow or orange
-  std::vector<TrackCone> others; // cones that bound nothing, such as large orange ones beside the gate
-  std::vector<Eigen::Vector2d> clutter;  // things beside the track that a pipeline may take for a cone
+  std::vector<TrackCone>
+      others;  // cones that bound nothing, such as large orange ones beside the gate
+  std::vector<Eigen::Vector2d>
+      clutter;  // things beside the track that a pipeline may take for a cone
 };
 
 /// Reads our own YAML, PacSim YAML, FSSIM YAML (told apart by their keys) or EUFS CSV.
 /// Throws TrackError with file, line and reason.
 Track LoadTrack(const std::string& file);
 
-/// Writes our own YAML, which LoadTrack() reads back exactly. Throws std::runtime_error where it cannot write.
+/// Writes our own YAML, which LoadTrack() reads back exactly. Throws std::runtime_error where it
+/// cannot write.
 void SaveTrack(const Track& track, const std::string& file);
 
 }  // namespace hairpin
