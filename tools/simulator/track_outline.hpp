@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "tools/simulator/track_geometry.hpp"
+#include "tools/simulator/track_random.hpp"
+
+namespace hairpin {
+
+/// A polygon for a track to follow, and which of its edges is to hold the start. Counter-clockwise.
+struct TrackOutline {
+  Polyline corners;
+  size_t start_edge = 0;  // from corners[start_edge] to the next
+};
+
+struct OutlineParams {
+  size_t edges = 20;   // of the grid along the boundary, at least
+  double cell = 13.0;  // m, side of a square of the grid
+  double shift = 2.0;  // m, by which a corner leaves the grid in x and y at most
+  double merge = 0.6;  // probability that a corner in mid-straight is left out
+};
+
+/// The boundary of a random clump of grid squares without holes. Its longest straight is the start
+/// edge.
+TrackOutline RandomOutline(const OutlineParams& params, TrackRandom& random);
+
+}  // namespace hairpin
