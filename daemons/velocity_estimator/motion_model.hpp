@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "daemons/velocity_estimator/measurements.hpp"
+#include "daemons/velocity_estimator/velocity_estimator_params.hpp"
+
+namespace hairpin {
+
+/// x = [v_x v_y | r | a_x a_y | s_fl s_fr s_rl s_rr], of base: m/s, rad/s, m/s^2, wheel slips.
+enum StateIndex : int { kVelocity = 0, kYawRate = 2, kAcceleration = 3, kSlip = 5, kStateSize = 9 };
+using StateVector = Eigen::Matrix<double, kStateSize, 1>;
+using StateMatrix = Eigen::Matrix<double, kStateSize, kStateSize>;
+
+/// Moves the state by `dt` [s], of either sign: v' = a + r [v_y, -v_x]; r, a and slips stay.
+StateVector Move(const StateVector& state, double dt);
+
+/// Velocity in base of a point fixed to the car: v + r x p.
+Eigen::Vector2d VelocityAt(const StateVector& state, const Eigen::Vector2d& position);
+
+/// Slip of the wheels as a first-order Gauss-Markov process about zero, bounded by the force that
+/// each tyre passes: motor torque, and the friction brakes' share of the deceleration. A free wheel
+/// hardly slips.
+class SlipModel {
+ public:
+  SlipModel(const SlipParams& params, const Car& car) : params_(params), car_(car) {}
+
+  /// Standard deviations of the slips, for motor torques [N m] and longitudinal acceleration
+  /// [m/s^2].
+  Wheels Sigmas(const Wheels& torque, double acceleration) const;
+  /// Share of a slip that is left after `dt`.
+  double Decay(double dt) const;
+
+ private:
+  SlipParams params_;
+  Car car_;
+};
+
+/// Covariance that `dt` of motion adds.
+StateMatrix ProcessNoise(const MotionNoise& noise, const Wheels& slip_sigmas, double slip_decay,
+                         double dt);
+
+/// The hub of one wheel and the direction in which it rolls.
+struct WheelGeometry {
+  Eigen::Vector2d position;   // base
+  Eigen::Vector2d direction;  // base, unit
+};
+
+/// fl fr rl rr, the front ones turned by `steering_angle`.
+std::array<WheelGeometry, 4> WheelGeometries(const Car& car, double steering_angle);
+
+/// Longitudinal velocity of the hub, v_x,ij: d . (v + r x p) [m/s].
+double HubSpeed(const StateVector& state, const WheelGeometry& wheel);
+
+/// Wheel speed w = v_x,ij / R (1 + s) [rad/s]; below `min_speed`, where slip means nothing, w =
+/// (v_x,ij + s min_speed) / R.
+double WheelSpeed(double hub_speed, double slip, double radius, double min_speed);
+
+/// The antenna's velocity, turned into base by the heading.
+Eigen::Vector2d VelocityInBase(const GnssReading& reading);
+/// Its covariance: the receiver's, not below `noise`, and the heading's across the velocity.
+Eigen::Matrix2d CovarianceInBase(const GnssReading& reading, const SensorNoise& noise);
+
+}  // namespace hairpin

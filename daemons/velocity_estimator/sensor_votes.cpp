@@ -1,0 +1,86 @@
+#include "daemons/velocity_estimator/sensor_votes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/clock.hpp"
+#include "common/geometry.hpp"
+
+namespace hairpin {
+namespace {
+
+double MiddleOf(std::array<double, 4> values) {
+  std::sort(values.begin(), values.end());
+  return 0.5 * (values[1] + values[2]);
+}
+
+}  // namespace
+
+SensorVotes::SensorVotes(const VelocityEstimatorParams& params)
+    : params_(params), speed_(params.vote.time_constant), yaw_rate_(params.vote.time_constant) {}
+
+void SensorVotes::Cast(const StateVector& state, const Readings& readings,
+                       const Wheels& slip_sigmas) {
+  if (readings.imu) CastImu(state, *readings.imu);
+  if (readings.ground_speed) {
+    const GroundSpeedReading& reading = *readings.ground_speed;
+    const double residual =
+        reading.velocity.x() - VelocityAt(state, params_.car.ground_speed_position).x();
+    const double tolerance =
+        params_.vote.speed_offset + params_.vote.speed_scale * std::abs(reading.velocity.x());
+    speed_.Cast(kGroundSpeed, reading.utime, residual, tolerance, params_.deadlines.ground_speed);
+  }
+  if (readings.motors) CastMotors(state, readings, slip_sigmas);
+  if (readings.gnss) CastGnss(state, *readings.gnss);
+}
+
+void SensorVotes::CastImu(const StateVector& state, const ImuReading& reading) {
+  yaw_rate_.Cast(kGyro, reading.utime, reading.yaw_rate - state[kYawRate], params_.vote.gyro_offset,
+                 params_.deadlines.imu);
+  const double speed = state[kVelocity];
+  if (speed < params_.vote.min_speed) return;
+  // a_y = v_y' + r v_x, and v_y' averages out.
+  const double residual = reading.acceleration.y() / speed - state[kYawRate];
+  yaw_rate_.Cast(kLateralAcceleration, reading.utime, residual,
+                 params_.vote.lateral_acceleration / speed, params_.deadlines.imu);
+}
+
+void SensorVotes::CastMotors(const StateVector& state, const Readings& readings,
+                             const Wheels& slip_sigmas) {
+  const MotorsReading& reading = *readings.motors;
+  const double steering = readings.steering ? readings.steering->angle : 0.0;
+  const auto wheels = WheelGeometries(params_.car, steering);
+  std::array<double, 4> residuals;
+  for (size_t i = 0; i < residuals.size(); ++i) {
+    residuals[i] = reading.speed[i] * params_.car.wheel_radius - HubSpeed(state, wheels[i]);
+  }
+  // Twice the slip's deviation: more is improbable for the average of wheels and time.
+  const double slip = 2.0 * *std::min_element(slip_sigmas.begin(), slip_sigmas.end());
+  const double slip_speed = slip * std::abs(state[kVelocity]);
+  // Without the steering angle, only the rear wheels tell.
+  const double residual =
+      readings.steering ? MiddleOf(residuals) : 0.5 * (residuals[2] + residuals[3]);
+  speed_.Cast(kWheels, reading.utime, residual, params_.vote.speed_offset + slip_speed,
+              params_.deadlines.motors);
+  const double width = params_.car.track_width;
+  yaw_rate_.Cast(kRearWheels, reading.utime, (residuals[3] - residuals[2]) / width,
+                 params_.vote.gyro_offset + slip_speed / width, params_.deadlines.motors);
+}
+
+void SensorVotes::CastGnss(const StateVector& state, const GnssReading& reading) {
+  const Eigen::Vector2d velocity = VelocityInBase(reading);
+  const double residual = velocity.x() - VelocityAt(state, params_.car.gnss_position).x();
+  const double tolerance =
+      params_.vote.speed_offset + params_.vote.speed_scale * std::abs(velocity.x());
+  speed_.Cast(kGnss, reading.utime, residual, tolerance, params_.deadlines.gnss);
+  const double dt = last_gnss_ ? SecondsBetween(last_gnss_->utime, reading.utime) : 0.0;
+  if (dt > 0.0 && dt <= params_.deadlines.gnss) {
+    const double rate = WrapAngle(reading.heading - last_gnss_->heading) / dt;
+    yaw_rate_.Cast(kHeading, reading.utime, rate - state[kYawRate], params_.vote.heading_rate,
+                   params_.deadlines.gnss);
+  }
+  last_gnss_ = reading;
+}
+
+}  // namespace hairpin
