@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace hairpin {
+
+struct MiddlePathParams {
+  double point_spacing = 0.0;         // m, along the path
+  int smoothing_passes = 0;           // of a (1, 2, 1) / 4 filter over the points
+  double max_length = 0.0;            // m
+  double extrapolation = 0.0;         // m, past the last cone seen
+  double curvature_window = 0.0;      // m of path whose bend the extrapolation goes on with
+  double max_extrapolated_curvature = 0.0;  // 1/m
+};
+
+/// Throws std::invalid_argument naming the parameter, the relation and the bound.
+void Check(const MiddlePathParams& params);
+
+struct PathPoint {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  double width = 0.0;         // m, of the track there
+  bool extrapolated = false;  // past the last cone seen
+};
+
+struct MiddlePath {
+  std::vector<PathPoint> points;  // the first at the car
+  double length = 0.0;            // m
+  double seen_length = 0.0;       // m, of the part that is not extrapolated
+};
+
+/// Both ends of a line across the track: a crossed edge of the triangulation, or a cone and its inferred opposite.
+struct Gate {
+  Eigen::Vector2d left = Eigen::Vector2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  Eigen::Vector2d middle() const { return 0.5 * (left + right); }
+  double width() const { return (left - right).norm(); }
+};
+
+/// From `start` through the middles of the gates, evenly spaced and smoothed, then on along the circle of its last
+/// stretch for the length of the extrapolation. No gates: no points.
+MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const std::vector<Gate>& gates, const MiddlePathParams& params);
+
+}  // namespace hairpin
