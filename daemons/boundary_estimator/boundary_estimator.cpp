@@ -122,7 +122,7 @@ TrackEstimate BoundaryEstimator::Estimate(const Pose2& T_local_base, const std::
     append(estimate.right, stretch.edges[i].right, stretch.gates[i].right);
   }
   estimate.valid = true;
-  estimate.path = BuildMiddlePath(Eigen::Vector2d::Zero(), stretch.gates, params_.path);
+  estimate.path = BuildMiddlePath(Eigen::Vector2d::Zero(), stretch.gates, found.winner->edges.size(), params_.path);
   for (PathPoint& point : estimate.path.points) point.position = T_local_base * point.position;
   estimate.winner = found.winner->score;
   if (found.runner_up) estimate.runner_up = found.runner_up->score;

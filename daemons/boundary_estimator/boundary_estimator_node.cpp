@@ -132,6 +132,7 @@ MiddlePathParams LoadPathParams(const Config& config) {
   params.max_length = config.Number("max_length_m", {5.0, 100.0});
   params.extrapolation = config.Number("extrapolation_m", {0.0, 50.0});
   params.curvature_window = config.Number("curvature_window_m", {0.5, 50.0});
+  params.curvature_decay = config.Number("curvature_decay_m", {0.1, 1000.0});
   params.max_extrapolated_curvature = config.Number("max_extrapolated_curvature_radpm", {0.0, 1.0});
   return params;
 }

@@ -65,10 +65,11 @@ void Extrapolate(std::vector<PathPoint>& points, double length, const MiddlePath
   double heading = std::atan2(last.y(), last.x());
   for (double done = 0.0; done < length; done += params.point_spacing) {
     const double step = std::min(params.point_spacing, length - done);
-    heading += 0.5 * curvature * step;
+    const double bend = curvature * std::exp(-(done + 0.5 * step) / params.curvature_decay) * step;
+    heading += 0.5 * bend;
     const Eigen::Vector2d position =
         points.back().position + step * Eigen::Vector2d(std::cos(heading), std::sin(heading));
-    heading += 0.5 * curvature * step;
+    heading += 0.5 * bend;
     points.push_back({position, points.back().width, true});
   }
 }
@@ -84,10 +85,11 @@ void Check(const MiddlePathParams& params) {
   require(params.max_length > params.point_spacing, "max_length must be > point_spacing");
   require(params.extrapolation >= 0.0, "extrapolation must be >= 0");
   require(params.curvature_window > 0.0, "curvature_window must be > 0");
+  require(params.curvature_decay > 0.0, "curvature_decay must be > 0");
   require(params.max_extrapolated_curvature >= 0.0, "max_extrapolated_curvature must be >= 0");
 }
 
-MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const std::vector<Gate>& gates, const MiddlePathParams& params) {
+MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const std::vector<Gate>& gates, size_t num_complete, const MiddlePathParams& params) {
   MiddlePath path;
   if (gates.empty()) return path;
   std::vector<PathPoint> corners{{start, gates.front().width(), false}};
@@ -101,7 +103,12 @@ MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const std::vector<Gate>
   }
   path.points.resize(kept);
   path.seen_length = length;
-  const double extrapolated = std::clamp(params.max_length - length, 0.0, params.extrapolation);
+  double one_sided = 0.0;
+  for (size_t i = std::max<size_t>(num_complete, 1); i < gates.size(); ++i) {
+    one_sided += (gates[i].middle() - gates[i - 1].middle()).norm();
+  }
+  const double guess = std::max(params.extrapolation - one_sided, 0.0);
+  const double extrapolated = std::clamp(params.max_length - length, 0.0, guess);
   Extrapolate(path.points, extrapolated, params);
   path.length = length + (path.points.size() > kept ? extrapolated : 0.0);
   return path;

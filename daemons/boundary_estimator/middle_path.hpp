@@ -9,8 +9,9 @@ struct MiddlePathParams {
   double point_spacing = 0.0;         // m, along the path
   int smoothing_passes = 0;           // of a (1, 2, 1) / 4 filter over the points
   double max_length = 0.0;            // m
-  double extrapolation = 0.0;         // m, past the last cone seen
+  double extrapolation = 0.0;         // m, past the last gate with cones on both sides; cones of one side count into it
   double curvature_window = 0.0;      // m of path whose bend the extrapolation goes on with
+  double curvature_decay = 0.0;       // m, along the extrapolation, to 1/e of that bend
   double max_extrapolated_curvature = 0.0;  // 1/m
 };
 
@@ -39,6 +40,6 @@ struct Gate {
 
 /// From `start` through the middles of the gates, evenly spaced and smoothed, then on along the circle of its last
 /// stretch for the length of the extrapolation. No gates: no points.
-MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const std::vector<Gate>& gates, const MiddlePathParams& params);
+MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const std::vector<Gate>& gates, size_t num_complete, const MiddlePathParams& params);
 
 }  // namespace hairpin

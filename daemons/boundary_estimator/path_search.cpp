@@ -126,17 +126,19 @@ void PathSearch::AddChild(const Problem& problem, int parent, int vertex, bool o
   if (node.cones.test(Index(vertex))) return;
   int& side = on_left ? node.edge.left : node.edge.right;
   const double spacing = (problem.positions[Index(vertex)] - problem.positions[Index(side)]).norm();
-  if (spacing > params_.max_spacing) return;
+  const bool between_gates = node.features.edges() > 0;
+  if (between_gates && spacing > params_.max_spacing) return;
+  const bool counts = between_gates && spacing >= score_params_.min_spacing;
   side = vertex;
   node.cones.set(Index(vertex));
   node.triangles.set(Index(node.next_triangle));
   node.parent = parent;
   node.next_triangle = next_triangle;
   if (on_left) {
-    if (spacing >= score_params_.min_spacing) node.features.AddLeftSpacing(spacing);
+    if (counts) node.features.AddLeftSpacing(spacing);
     node.log_likelihood += problem.ratios[Index(vertex)].left;
   } else {
-    if (spacing >= score_params_.min_spacing) node.features.AddRightSpacing(spacing);
+    if (counts) node.features.AddRightSpacing(spacing);
     node.log_likelihood += problem.ratios[Index(vertex)].right;
   }
   CrossAndKeep(problem, node);
@@ -146,8 +148,9 @@ void PathSearch::CrossAndKeep(const Problem& problem, Node& node) {
   const Eigen::Vector2d& left = problem.positions[Index(node.edge.left)];
   const Eigen::Vector2d& right = problem.positions[Index(node.edge.right)];
   const double width = (left - right).norm();
-  if (width < params_.min_width || width > params_.max_width) return;
-  node.features.CrossEdge(0.5 * (left + right), width, score_params_.min_segment);
+  const bool before_first_gate = node.features.edges() == 0;
+  if (width < params_.min_width || (width > params_.max_width && !before_first_gate)) return;
+  if (width <= params_.max_width) node.features.CrossEdge(0.5 * (left + right), width, score_params_.min_segment);
   if (node.features.least_cosine() < least_cosine_) return;
   node.log_posterior = Score(node.features.values(), node.log_likelihood, score_params_).log_posterior();
   nodes_.push_back(node);
@@ -156,7 +159,8 @@ void PathSearch::CrossAndKeep(const Problem& problem, Node& node) {
 std::optional<int> PathSearch::Best(const std::vector<bool>& excluded) const {
   std::optional<int> best;
   for (size_t i = 0; i < nodes_.size(); ++i) {
-    if (excluded[i] || (best && nodes_[i].log_posterior <= nodes_[Index(*best)].log_posterior)) continue;
+    if (excluded[i] || nodes_[i].features.edges() == 0) continue;
+    if (best && nodes_[i].log_posterior <= nodes_[Index(*best)].log_posterior) continue;
     best = static_cast<int>(i);
   }
   return best;
@@ -176,7 +180,9 @@ std::vector<bool> PathSearch::RelativesOf(int node) const {
 ScoredPath PathSearch::PathTo(int node) const {
   ScoredPath path;
   path.score = Score(nodes_[Index(node)].features.values(), nodes_[Index(node)].log_likelihood, score_params_);
-  for (int i = node; i != kNoParent; i = nodes_[Index(i)].parent) path.edges.push_back(nodes_[Index(i)].edge);
+  for (int i = node; i != kNoParent && nodes_[Index(i)].features.edges() > 0; i = nodes_[Index(i)].parent) {
+    path.edges.push_back(nodes_[Index(i)].edge);
+  }
   std::reverse(path.edges.begin(), path.edges.end());
   return path;
 }
