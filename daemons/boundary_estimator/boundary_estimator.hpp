@@ -8,7 +8,7 @@
 #include "common/geometry.hpp"
 #include "daemons/boundary_estimator/middle_path.hpp"
 #include "daemons/boundary_estimator/path_search.hpp"
-#include "daemons/boundary_estimator/side_chain.hpp"
+#include "daemons/boundary_estimator/one_sided.hpp"
 
 namespace hairpin {
 
@@ -18,7 +18,7 @@ struct BoundaryEstimatorParams {
   int max_cones = 0;           // nor more than this many, the nearest first
   PathScoreParams score;
   PathSearchParams search;
-  SideChainParams side;
+  OneSidedParams one_sided;
   MiddlePathParams path;
 };
 
@@ -60,22 +60,12 @@ class BoundaryEstimator {
   TrackEstimate Estimate(const Pose2& T_local_base, const std::vector<MapCone>& cones);
 
  private:
-  /// The cones used, nearest first, in base.
-  struct Scene {
-    std::vector<MapCone> cones;
-    std::vector<Eigen::Vector2d> positions;
-    std::vector<double> left_ratios;
-    std::vector<double> right_ratios;
+  struct Hypothesis {
+    Stretch stretch;
+    PathScore score;
   };
-  /// A stretch of track: its gates, and the cones of its sides by index, kInferred where there is none.
-  struct Stretch {
-    std::vector<Gate> gates;
-    std::vector<CrossedEdge> edges;
-  };
-  static constexpr int kInferred = -1;
-
-  Scene Select(const Pose2& T_local_base, const std::vector<MapCone>& cones) const;
-  void ContinueOnOneSide(const Scene& scene, Stretch& stretch) const;
+  Scene Select(const Pose2& T_base_local, const std::vector<MapCone>& cones) const;
+  std::optional<Hypothesis> BestOneSided(const Scene& scene) const;
 
   BoundaryEstimatorParams params_;
   PathSearch search_;

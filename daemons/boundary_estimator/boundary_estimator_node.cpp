@@ -115,12 +115,14 @@ PathSearchParams LoadSearchParams(const Config& config) {
   return params;
 }
 
-SideChainParams LoadSideParams(const Config& config, double min_spacing) {
-  SideChainParams params;
+OneSidedParams LoadOneSidedParams(const Config& config, double min_spacing) {
+  OneSidedParams params;
   params.min_spacing = min_spacing;
   params.max_spacing = config.Number("max_spacing_m", {1.0, 50.0});
   params.max_turn = config.Number("max_turn_rad", {0.1, 3.0});
   params.min_log_ratio = config.Number("min_log_ratio", {-100.0, 0.0});
+  params.max_jump = config.Number("max_jump_m", {1.0, 50.0});
+  params.log_penalty = config.Number("log_penalty", {0.0, 1000.0});
   params.default_width = config.Number("default_width_m", {1.0, 20.0});
   return params;
 }
@@ -146,7 +148,7 @@ BoundaryEstimatorParams LoadBoundaryEstimatorParams(const Config& config) {
   params.max_cones = config.Integer("max_cones", 3, static_cast<int>(PathSearch::kMaxCones));
   params.score = LoadScoreParams(config);
   params.search = LoadSearchParams(config.Section("search"));
-  params.side = LoadSideParams(config.Section("side"), params.score.min_spacing);
+  params.one_sided = LoadOneSidedParams(config.Section("one_sided"), params.score.min_spacing);
   params.path = LoadPathParams(config.Section("path"));
   config.Finish();
   return params;

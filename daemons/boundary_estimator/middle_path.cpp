@@ -57,6 +57,17 @@ double EndCurvature(const std::vector<PathPoint>& points, double window) {
   return length > 0.0 ? turned / length : 0.0;
 }
 
+// Length past the last gate with cones on both sides.
+double OneSidedEnd(const Stretch& stretch) {
+  double length = 0.0;
+  for (size_t i = stretch.size(); i-- > 1;) {
+    const auto [left, right] = stretch.edges[i];
+    if (left != CrossedEdge::kInferred && right != CrossedEdge::kInferred) break;
+    length += (stretch.gates[i].middle() - stretch.gates[i - 1].middle()).norm();
+  }
+  return length;
+}
+
 void Extrapolate(std::vector<PathPoint>& points, double length, const MiddlePathParams& params) {
   if (points.size() < 2) return;
   const double limit = params.max_extrapolated_curvature;
@@ -89,9 +100,10 @@ void Check(const MiddlePathParams& params) {
   require(params.max_extrapolated_curvature >= 0.0, "max_extrapolated_curvature must be >= 0");
 }
 
-MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const std::vector<Gate>& gates, size_t num_complete, const MiddlePathParams& params) {
+MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const Stretch& stretch, const MiddlePathParams& params) {
   MiddlePath path;
-  if (gates.empty()) return path;
+  if (stretch.empty()) return path;
+  const std::vector<Gate>& gates = stretch.gates;
   std::vector<PathPoint> corners{{start, gates.front().width(), false}};
   for (const Gate& gate : gates) corners.push_back({gate.middle(), gate.width(), false});
   path.points = Resample(corners, params.point_spacing);
@@ -103,11 +115,7 @@ MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const std::vector<Gate>
   }
   path.points.resize(kept);
   path.seen_length = length;
-  double one_sided = 0.0;
-  for (size_t i = std::max<size_t>(num_complete, 1); i < gates.size(); ++i) {
-    one_sided += (gates[i].middle() - gates[i - 1].middle()).norm();
-  }
-  const double guess = std::max(params.extrapolation - one_sided, 0.0);
+  const double guess = std::max(params.extrapolation - OneSidedEnd(stretch), 0.0);
   const double extrapolated = std::clamp(params.max_length - length, 0.0, guess);
   Extrapolate(path.points, extrapolated, params);
   path.length = length + (path.points.size() > kept ? extrapolated : 0.0);

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "daemons/boundary_estimator/stretch.hpp"
+
 namespace hairpin {
 
 struct MiddlePathParams {
@@ -30,16 +32,8 @@ struct MiddlePath {
   double seen_length = 0.0;       // m, of the part that is not extrapolated
 };
 
-/// Both ends of a line across the track: a crossed edge of the triangulation, or a cone and its inferred opposite.
-struct Gate {
-  Eigen::Vector2d left = Eigen::Vector2d::Zero();
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  Eigen::Vector2d middle() const { return 0.5 * (left + right); }
-  double width() const { return (left - right).norm(); }
-};
-
-/// From `start` through the middles of the gates, evenly spaced and smoothed, then on along the circle of its last
-/// stretch for the length of the extrapolation. No gates: no points.
-MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const std::vector<Gate>& gates, size_t num_complete, const MiddlePathParams& params);
+/// From `start` through the middles of the stretch, evenly spaced and smoothed, then on with its bend for the length of the
+/// extrapolation. An empty stretch: no points.
+MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const Stretch& stretch, const MiddlePathParams& params);
 
 }  // namespace hairpin

@@ -44,10 +44,9 @@ PathSearch::PathSearch(const PathSearchParams& params, const PathScoreParams& sc
   Check(score_params_);
 }
 
-PathSearchResult PathSearch::Search(const std::vector<Eigen::Vector2d>& positions,
-                                    const std::vector<SideLogRatios>& ratios, const Triangulation& triangulation) {
-  if (positions.size() > kMaxCones) throw std::invalid_argument("PathSearch: more than 128 positions");
-  const Problem problem{positions, ratios, triangulation.triangles};
+PathSearchResult PathSearch::Search(const Scene& scene, const Triangulation& triangulation) {
+  if (scene.positions.size() > kMaxCones) throw std::invalid_argument("PathSearch: more than 128 positions");
+  const Problem problem{scene.positions, scene.ratios, triangulation.triangles};
   nodes_.clear();
   level_.clear();
   AddRoots(problem);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "daemons/boundary_estimator/delaunay.hpp"
-#include "daemons/boundary_estimator/path_score.hpp"
+#include "daemons/boundary_estimator/stretch.hpp"
 
 namespace hairpin {
 
@@ -22,13 +22,6 @@ struct PathSearchParams {
 
 /// Throws std::invalid_argument naming the parameter, the relation and the bound.
 void Check(const PathSearchParams& params);
-
-/// A crossed edge, by the indices of its cones.
-struct CrossedEdge {
-  int left;
-  int right;
-  bool operator==(const CrossedEdge&) const = default;
-};
 
 struct ScoredPath {
   std::vector<CrossedEdge> edges;  // from the car outward
@@ -52,9 +45,8 @@ class PathSearch {
 
   PathSearch(const PathSearchParams& params, const PathScoreParams& score_params);
 
-  /// `ratios[i]` belongs to `positions[i]` (base, m). Throws std::invalid_argument for more than kMaxCones positions.
-  PathSearchResult Search(const std::vector<Eigen::Vector2d>& positions, const std::vector<SideLogRatios>& ratios,
-                          const Triangulation& triangulation);
+  /// `triangulation` is that of the scene's positions. Throws std::invalid_argument for more than kMaxCones of them.
+  PathSearchResult Search(const Scene& scene, const Triangulation& triangulation);
 
  private:
   struct Node {
