@@ -1,0 +1,164 @@
+#include "daemons/boundary_estimator/one_sided.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace hairpin {
+namespace {
+
+size_t Index(int i) { return static_cast<size_t>(i); }
+
+double RatioOf(const SideLogRatios& ratios, Side side) { return side == Side::kLeft ? ratios.left : ratios.right; }
+
+Side OtherThan(Side side) { return side == Side::kLeft ? Side::kRight : Side::kLeft; }
+
+int ConeOf(const CrossedEdge& edge, Side side) { return side == Side::kLeft ? edge.left : edge.right; }
+
+// The nearest cone from `from` on that may belong to the side, within the turn allowed of `direction`.
+std::optional<int> NextCone(const Scene& scene, Side side, const Eigen::Vector2d& from, const Eigen::Vector2d& direction,
+                            const std::vector<bool>& taken, const OneSidedParams& params) {
+  const double least_cosine = std::cos(params.max_turn);
+  std::optional<int> nearest;
+  double least = params.max_spacing;
+  for (size_t i = 0; i < scene.positions.size(); ++i) {
+    if (taken[i] || RatioOf(scene.ratios[i], side) < params.min_log_ratio) continue;
+    const Eigen::Vector2d step = scene.positions[i] - from;
+    const double distance = step.norm();
+    if (distance < params.min_spacing || distance > least || step.dot(direction) < least_cosine * distance) continue;
+    nearest = static_cast<int>(i);
+    least = distance;
+  }
+  return nearest;
+}
+
+// The cones that follow on `from`, which leaves in `direction`.
+std::vector<int> Follow(const Scene& scene, Side side, int from, Eigen::Vector2d direction, std::vector<bool> taken,
+                        const OneSidedParams& params) {
+  std::vector<int> chain;
+  taken[Index(from)] = true;
+  while (const auto next = NextCone(scene, side, scene.positions[Index(from)], direction, taken, params)) {
+    direction = (scene.positions[Index(*next)] - scene.positions[Index(from)]).normalized();
+    from = *next;
+    taken[Index(from)] = true;
+    chain.push_back(from);
+  }
+  return chain;
+}
+
+// A gate at `cone`, `width` wide, across the direction `along` of the side.
+Gate InferGate(const Eigen::Vector2d& cone, const Eigen::Vector2d& along, Side side, double width) {
+  const Eigen::Vector2d to_left = width * Eigen::Vector2d(-along.y(), along.x());
+  return side == Side::kLeft ? Gate{cone, cone - to_left} : Gate{cone + to_left, cone};
+}
+
+// Appends gates at the cones of `chain`, but not where a gate would lie behind the end of the stretch, as on the inside of
+// a tight bend. `arriving`: direction of the side at the first cone.
+void AppendChain(const Scene& scene, Side side, const std::vector<int>& chain, Eigen::Vector2d arriving, double width,
+                 const OneSidedParams& params, Stretch& stretch) {
+  for (size_t i = 0; i < chain.size(); ++i) {
+    const Eigen::Vector2d& cone = scene.positions[Index(chain[i])];
+    Eigen::Vector2d leaving = arriving;
+    if (i + 1 < chain.size()) leaving = (scene.positions[Index(chain[i + 1])] - cone).normalized();
+    const Gate gate = InferGate(cone, (arriving + leaving).normalized(), side, width);
+    arriving = leaving;
+    const Eigen::Vector2d step = gate.middle() - stretch.end();
+    if (step.dot(stretch.end_direction()) < 0.5 * params.min_spacing) continue;
+    const bool left = side == Side::kLeft;
+    stretch.Append({left ? chain[i] : CrossedEdge::kInferred, left ? CrossedEdge::kInferred : chain[i]}, gate);
+  }
+}
+
+// The nearest cone ahead of the car that is of the side by its colour or, that being unknown, by its place.
+std::optional<int> FirstCone(const Scene& scene, Side side, const OneSidedParams& params) {
+  std::optional<int> nearest;
+  for (size_t i = 0; i < scene.positions.size(); ++i) {
+    const Eigen::Vector2d& position = scene.positions[i];
+    const bool on_its_side = side == Side::kLeft ? position.y() > 0.0 : position.y() < 0.0;
+    const bool sure = RatioOf(scene.ratios[i], OtherThan(side)) < params.min_log_ratio;
+    if (position.x() < 0.0 || position.norm() > params.max_spacing || !(sure || on_its_side)) continue;
+    if (RatioOf(scene.ratios[i], side) < params.min_log_ratio) continue;
+    if (!nearest || position.norm() < scene.positions[Index(*nearest)].norm()) nearest = static_cast<int>(i);
+  }
+  return nearest;
+}
+
+std::vector<int> ConesOf(const Stretch& stretch, Side side) {
+  std::vector<int> cones;
+  for (const CrossedEdge& edge : stretch.edges) {
+    const int cone = ConeOf(edge, side);
+    if (cone != CrossedEdge::kInferred && (cones.empty() || cones.back() != cone)) cones.push_back(cone);
+  }
+  return cones;
+}
+
+}  // namespace
+
+void Check(const OneSidedParams& params) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw std::invalid_argument(std::string("OneSidedParams: ") + what);
+  };
+  require(params.min_spacing > 0.0, "min_spacing must be > 0");
+  require(params.max_spacing > params.min_spacing, "max_spacing must be > min_spacing");
+  require(params.max_turn > 0.0 && params.max_turn < std::numbers::pi, "max_turn must be in (0, pi)");
+  require(params.min_log_ratio <= 0.0, "min_log_ratio must be <= 0");
+  require(params.max_jump > 0.0, "max_jump must be > 0");
+  require(params.log_penalty >= 0.0, "log_penalty must be >= 0");
+  require(params.default_width > 0.0, "default_width must be > 0");
+}
+
+Stretch FollowSideFromCar(const Scene& scene, Side side, double width, const OneSidedParams& params) {
+  Stretch stretch;
+  const std::optional<int> first = FirstCone(scene, side, params);
+  if (!first) return stretch;
+  std::vector<int> chain = Follow(scene, side, *first, Eigen::Vector2d::UnitX(),
+                                  std::vector<bool>(scene.positions.size(), false), params);
+  Eigen::Vector2d along = Eigen::Vector2d::UnitX();
+  if (!chain.empty()) along = (scene.positions[Index(chain[0])] - scene.positions[Index(*first)]).normalized();
+  chain.insert(chain.begin(), *first);
+  AppendChain(scene, side, chain, along, width, params, stretch);
+  return stretch;
+}
+
+void ContinueOnOneSide(const Scene& scene, const OneSidedParams& params, Stretch& stretch) {
+  std::vector<bool> taken(scene.positions.size(), false);
+  for (const CrossedEdge& edge : stretch.edges) {
+    for (const int cone : {edge.left, edge.right}) {
+      if (cone != CrossedEdge::kInferred) taken[Index(cone)] = true;
+    }
+  }
+  std::vector<int> best;
+  Side best_side = Side::kLeft;
+  Eigen::Vector2d arriving = Eigen::Vector2d::UnitX();
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    const std::vector<int> cones = ConesOf(stretch, side);
+    if (cones.empty()) continue;
+    const Eigen::Vector2d& last = scene.positions[Index(cones.back())];
+    Eigen::Vector2d direction = stretch.end_direction();
+    if (cones.size() > 1) {
+      const Eigen::Vector2d step = last - scene.positions[Index(cones[cones.size() - 2])];
+      if (step.norm() >= params.min_spacing) direction = step.normalized();
+    }
+    const std::vector<int> chain = Follow(scene, side, cones.back(), direction, taken, params);
+    if (chain.size() <= best.size()) continue;
+    best = chain;
+    best_side = side;
+    arriving = (scene.positions[Index(chain[0])] - last).normalized();
+  }
+  AppendChain(scene, best_side, best, arriving, stretch.MeanWidth(), params, stretch);
+}
+
+void FillJump(const Stretch& one_sided, const OneSidedParams& params, Stretch& stretch) {
+  if (stretch.empty() || stretch.gates.front().middle().norm() <= params.max_jump) return;
+  const CrossedEdge goal = stretch.edges.front();
+  const auto joins = [&](const CrossedEdge& edge) { return edge.left == goal.left || edge.right == goal.right; };
+  const auto join = std::find_if(one_sided.edges.begin(), one_sided.edges.end(), joins);
+  if (join == one_sided.edges.end()) return;
+  const auto count = join - one_sided.edges.begin();
+  stretch.edges.insert(stretch.edges.begin(), one_sided.edges.begin(), join);
+  stretch.gates.insert(stretch.gates.begin(), one_sided.gates.begin(), one_sided.gates.begin() + count);
+}
+
+}  // namespace hairpin

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/geometry.hpp"
+#include "daemons/boundary_estimator/boundary_estimator.hpp"
+
+namespace hairpin {
+
+/// A recording that cannot be used: "file: frame N: key: reason".
+class RecordingError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One moment of a recorded run, all in its map frame.
+struct RecordedFrame {
+  Pose2 T_map_base;
+  double speed = 0.0;          // m/s
+  std::vector<MapCone> cones;  // the map as it was known then
+};
+
+/// Reads a JSON list of frames {car_position: [x, y], car_direction: [dx, dy], car_speed, slam_cones: five lists of [x, y]:
+/// unknown, yellow, blue, small orange, large orange}; metres, m/s. Throws RecordingError.
+std::vector<RecordedFrame> LoadRecordedRun(const std::string& file);
+
+}  // namespace hairpin
