@@ -1,0 +1,189 @@
+#include "tools/simulator/simulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/clock.hpp"
+#include "tools/simulator/require.hpp"
+
+namespace hairpin {
+namespace {
+
+// Ticks between messages, by the channel table's nominal rates.
+template <class M>
+int64_t Period(const Channel<M>& channel) {
+  return std::llround(1.0 / (channel.rate_hz * Simulator::kTick));
+}
+
+template <class M>
+double PeriodSeconds(const Channel<M>& channel) {
+  return 1.0 / channel.rate_hz;
+}
+
+int Ticks(double duration) { return static_cast<int>(std::lround(duration / Simulator::kTick)); }
+
+std::vector<truth_cone_t> ToMessage(const std::vector<TrackCone>& cones) {
+  std::vector<truth_cone_t> messages;
+  for (const TrackCone& cone : cones) {
+    truth_cone_t message{};
+    message.x_m = cone.position.x();
+    message.y_m = cone.position.y();
+    message.colour = static_cast<int32_t>(cone.colour);
+    messages.push_back(message);
+  }
+  return messages;
+}
+
+}  // namespace
+
+Simulator::Simulator(const SimulatorParams& params, const Car& car, const Track& track,
+                     uint64_t seed, Bus& bus)
+    : params_(params),
+      track_(track),
+      seed_(seed),
+      bus_(bus),
+      utime_(AddSeconds(kFirstUtime, -kTick)),
+      vehicle_(params.vehicle, car, track.start),
+      actuators_(params.actuators, car),
+      motion_(params.motion_sensors, car, seed),
+      referee_(params.referee, car, track),
+      race_control_(params.race_control, car) {
+  RequireWithin("cone_delay", params.cone_delay_s, 0.0, 0.5);
+  const auto add = [&](const char* source, const Channel<cones_t>& channel,
+                       const ConeSensorParams& sensor) {
+    pipelines_.push_back(
+        {source, channel, ConeSensor(sensor, source, seed), Ticks(sensor.phase_s)});
+  };
+  add("fusion", channels::kConesFusion, params.fusion);
+  add("lidar", channels::kConesLidar, params.lidar);
+  add("camera", channels::kConesCamera, params.camera);
+  for (const std::string& source : Sources()) sources_[source] = true;
+  bus_.Subscribe(channels::kDriveCommand, [this](const drive_command_t& command) {
+    const std::string problem = actuators_.OnCommand(command, utime_);
+    if (!problem.empty()) bus_.Refuse(channels::kDriveCommand, problem);
+  });
+  bus_.Subscribe(channels::kAsState, [this](const as_state_t& state) {
+    const std::string problem = actuators_.OnState(state, utime_);
+    if (!problem.empty()) bus_.Refuse(channels::kAsState, problem);
+  });
+}
+
+const std::vector<std::string>& Simulator::Sources() {
+  static const std::vector<std::string> kSources{"fusion", "lidar",        "camera",   "imu",
+                                                 "wheels", "ground_speed", "steering", "gnss"};
+  return kSources;
+}
+
+void Simulator::SetSource(const std::string& source, bool on) {
+  const auto found = sources_.find(source);
+  if (found == sources_.end()) {
+    std::string names;
+    for (const std::string& name : Sources()) names += (names.empty() ? "" : ", ") + name;
+    throw std::invalid_argument("no source " + source + "; there are: " + names);
+  }
+  found->second = on;
+}
+
+void Simulator::Step() {
+  if (++tick_ > 0) Advance();
+  utime_ = AddSeconds(utime_, kTick);
+  RefereeInput input;
+  input.utime = utime_;
+  input.driving = actuators_.state() == as_state_t::STATE_DRIVING;
+  input.finished = actuators_.state() == as_state_t::STATE_FINISHED;
+  input.emergency = actuators_.emergency();
+  referee_.Judge(input, vehicle_.state());
+  if (tick_ % Period(channels::kTruthTrack) == 0) PublishTruthTrack();
+  PublishTruth();
+  if (tick_ % Period(channels::kVehicle) == 0) PublishVehicle();
+  for (PipelineRun& pipeline : pipelines_) PublishCones(pipeline);
+  PublishMotion();
+}
+
+void Simulator::Advance() {
+  const VehicleState& state = vehicle_.state();
+  const double speed = std::hypot(state.velocity.vx, state.velocity.vy);
+  const VehicleInput input = actuators_.Act(utime_, speed, state.steering_angle);
+  vehicle_.Advance(input, static_cast<int>(std::lround(kTick / Vehicle::kStep)));
+}
+
+void Simulator::PublishCones(PipelineRun& pipeline) {
+  if (tick_ % Period(pipeline.channel) == pipeline.phase_ticks) {
+    pipeline.waiting.push_back(pipeline.sensor.Scan(utime_, vehicle_.state().T_map_base,
+                                                    referee_.standing_cones(), track_.clutter));
+  }
+  const bool due = !pipeline.waiting.empty() &&
+                   utime_ >= AddSeconds(pipeline.waiting.front().utime, params_.cone_delay_s);
+  if (!due) return;
+  if (IsOn(pipeline.source)) bus_.Publish(pipeline.channel, pipeline.waiting.front());
+  pipeline.waiting.pop_front();
+}
+
+void Simulator::PublishMotion() {
+  // All are measured, on or off: an axis' bias wanders on, and the streams stay in step.
+  const VehicleState& state = vehicle_.state();
+  const motors_t motors = motion_.Motors(utime_, state);
+  const steering_t steering = motion_.Steering(utime_, state);
+  const ground_speed_t ground_speed = motion_.GroundSpeed(utime_, state);
+  const imu_t imu = motion_.Imu(utime_, state, PeriodSeconds(channels::kImu));
+  if (IsOn("wheels")) bus_.Publish(channels::kMotors, motors);
+  if (IsOn("steering")) bus_.Publish(channels::kSteering, steering);
+  if (IsOn("ground_speed")) bus_.Publish(channels::kGroundSpeed, ground_speed);
+  if (tick_ % Period(channels::kGnss) == 0) {
+    const gnss_t gnss = motion_.Gnss(utime_, state, PeriodSeconds(channels::kGnss));
+    if (IsOn("gnss")) bus_.Publish(channels::kGnss, gnss);
+  }
+  if (IsOn("imu")) bus_.Publish(channels::kImu, imu);
+}
+
+void Simulator::PublishVehicle() {
+  bus_.Publish(channels::kVehicle, race_control_.Vehicle(utime_, actuators_, vehicle_.state()));
+}
+
+void Simulator::PublishTruth() {
+  const VehicleState& state = vehicle_.state();
+  truth_t message{};
+  message.utime = utime_;
+  message.x_m = state.T_map_base.x;
+  message.y_m = state.T_map_base.y;
+  message.yaw_rad = state.T_map_base.yaw;
+  message.vx_mps = state.velocity.vx;
+  message.vy_mps = state.velocity.vy;
+  message.yaw_rate_radps = state.velocity.yaw_rate;
+  message.acceleration_mps2[0] = state.acceleration.x();
+  message.acceleration_mps2[1] = state.acceleration.y();
+  message.steering_angle_rad = state.steering_angle;
+  message.distance_m = state.distance;
+  message.lap = referee_.laps();
+  message.cones_hit = result().cones_hit;
+  message.off_course = result().off_course;
+  bus_.Publish(channels::kTruth, message);
+}
+
+void Simulator::PublishTruthTrack() {
+  truth_track_t message{};
+  message.utime = utime_;
+  message.name = track_.name;
+  message.seed = static_cast<int64_t>(seed_);
+  message.closed = track_.closed ? 1 : 0;
+  message.start_x_m = track_.start.x;
+  message.start_y_m = track_.start.y;
+  message.start_yaw_rad = track_.start.yaw;
+  const GateLine& finish = track_.finish_line;
+  const double line[4] = {finish.left.x(), finish.left.y(), finish.right.x(), finish.right.y()};
+  std::copy(std::begin(line), std::end(line), std::begin(message.finish_line_m));
+  message.left = ToMessage(track_.left);
+  message.right = ToMessage(track_.right);
+  std::vector<TrackCone> all;
+  for (const auto* cones : {&track_.left, &track_.right, &track_.others})
+    all.insert(all.end(), cones->begin(), cones->end());
+  for (const Eigen::Vector2d& thing : track_.clutter) all.push_back({thing, ConeColour::kUnknown});
+  message.cones = ToMessage(all);
+  message.num_left = static_cast<int32_t>(message.left.size());
+  message.num_right = static_cast<int32_t>(message.right.size());
+  message.num_cones = static_cast<int32_t>(message.cones.size());
+  bus_.Publish(channels::kTruthTrack, message);
+}
+
+}  // namespace hairpin

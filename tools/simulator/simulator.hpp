@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/bus.hpp"
+#include "common/car.hpp"
+#include "tools/simulator/actuators.hpp"
+#include "tools/simulator/cone_sensor.hpp"
+#include "tools/simulator/motion_sensors.hpp"
+#include "tools/simulator/race_control.hpp"
+#include "tools/simulator/referee.hpp"
+#include "tools/simulator/simulator_params.hpp"
+#include "tools/simulator/track.hpp"
+#include "tools/simulator/vehicle.hpp"
+
+namespace hairpin {
+
+/// The car, its sensors and the race around it, on a bus: publishes what drivers, perception and
+/// the CAN gateway would, listens to DRIVE_COMMAND and AS_STATE. Advances by Step() only, so that
+/// simulated time can wait for the stack's answer. The same seed and the same commands give the
+/// same messages.
+class Simulator {
+ public:
+  static constexpr double kTick = 0.01;  // s
+  static constexpr int64_t kFirstUtime = 1'700'000'000'000'000;
+
+  /// Throws std::invalid_argument for values that cannot be.
+  Simulator(const SimulatorParams& params, const Car& car, const Track& track, uint64_t seed,
+            Bus& bus);
+
+  /// One tick of 10 ms: the last commands act on the car, then the sensors publish, IMU last. The
+  /// first tick publishes the car as it stands, at kFirstUtime.
+  void Step();
+
+  /// Time of the last tick; kFirstUtime less one tick before the first.
+  int64_t utime() const { return utime_; }
+  /// The race is over. Step() may still be called.
+  bool done() const { return referee_.done(); }
+  const RaceResult& result() const { return referee_.result(); }
+  const VehicleState& vehicle() const { return vehicle_.state(); }
+  const Actuators& actuators() const { return actuators_; }
+
+  /// Names that SetSource() knows.
+  static const std::vector<std::string>& Sources();
+  /// Makes a source cease to publish at once, or resume. The noise of all others stays what it
+  /// would have been. Throws std::invalid_argument, with the names there are, for another name.
+  void SetSource(const std::string& source, bool on);
+  /// Presses the remote emergency stop.
+  void RequestResStop() { actuators_.StopByRes(); }
+
+ private:
+  /// A pipeline at work: scans that have been taken and wait for their delay to pass.
+  struct PipelineRun {
+    std::string source;
+    Channel<cones_t> channel;
+    ConeSensor sensor;
+    int phase_ticks;
+    std::deque<cones_t> waiting{};
+  };
+
+  bool IsOn(const std::string& source) const { return sources_.at(source); }
+  void Advance();
+  void PublishTruth();
+  void PublishTruthTrack();
+  void PublishVehicle();
+  void PublishCones(PipelineRun& pipeline);
+  void PublishMotion();
+
+  SimulatorParams params_;
+  Track track_;
+  uint64_t seed_;
+  Bus& bus_;
+  int64_t tick_ = -1;
+  int64_t utime_;
+  Vehicle vehicle_;
+  Actuators actuators_;
+  MotionSensors motion_;
+  std::vector<PipelineRun> pipelines_;
+  Referee referee_;
+  RaceControl race_control_;
+  std::map<std::string, bool> sources_;
+};
+
+}  // namespace hairpin
