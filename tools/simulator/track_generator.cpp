@@ -51,10 +51,13 @@ TrackOutline OutlineFor(double length, TrackRandom& random) {
   constexpr double kShortening =
       0.9;  // of a grid's boundary by shifting and rounding its corners, about
   OutlineParams params;
-  params.cell = random.Uniform(11.0, 15.0);
-  params.shift = 0.5 * (params.cell - kClearance);
-  params.edges = static_cast<size_t>(std::lround(length / (kShortening * params.cell)));
+  params.min_spacing = random.Uniform(10.5, 13.0);
+  params.max_spacing = random.Uniform(15.0, 24.0);
+  params.shift = 0.5 * (params.min_spacing - kClearance);
+  const double spacing = 0.5 * (params.min_spacing + params.max_spacing);
+  params.edges = static_cast<size_t>(std::lround(length / (kShortening * spacing)));
   params.merge = random.Uniform(0.3, 0.9);
+  params.shortcut = random.Uniform(0.2, 0.9);
   TrackOutline outline = RandomOutline(params, random);
   if (random.Chance(0.5)) {
     for (Eigen::Vector2d& corner : outline.corners) corner.y() = -corner.y();

@@ -85,25 +85,81 @@ std::vector<std::vector<Cell>> Straights(std::vector<Cell> corners) {
   return straights;
 }
 
+/// Bend at the beginning of a straight: 1 to the left, -1 to the right.
+int BendBefore(const std::vector<std::vector<Cell>>& straights, size_t i) {
+  const Cell& before = straights[(i + straights.size() - 1) % straights.size()].back();
+  const Cell& at = straights[i].front();
+  const Cell& after =
+      straights[i].size() > 1 ? straights[i][1] : straights[(i + 1) % straights.size()].front();
+  const int cross = (at.first - before.first) * (after.second - at.second) -
+                    (at.second - before.second) * (after.first - at.first);
+  return cross > 0 ? 1 : -1;
+}
+
+/// Positions of the grid's lines `from` to `to`, with random distances between.
+std::map<int, double> GridLines(int from, int to, const OutlineParams& params,
+                                TrackRandom& random) {
+  std::map<int, double> lines;
+  double at = 0.0;
+  for (int i = from; i <= to; ++i) {
+    lines[i] = at;
+    at += random.Uniform(params.min_spacing, params.max_spacing);
+  }
+  return lines;
+}
+
+class OutlineBuilder {
+ public:
+  OutlineBuilder(const std::vector<Cell>& corners, const OutlineParams& params, TrackRandom& random)
+      : params_(params), random_(random) {
+    const auto [left, right] = std::minmax_element(corners.begin(), corners.end());
+    const auto [low, high] =
+        std::minmax_element(corners.begin(), corners.end(),
+                            [](const Cell& a, const Cell& b) { return a.second < b.second; });
+    columns_ = GridLines(left->first, right->first, params, random);
+    rows_ = GridLines(low->second, high->second, params, random);
+  }
+
+  void Add(const Cell& corner) {
+    const double dx = random_.Uniform(-params_.shift, params_.shift);
+    const double dy = random_.Uniform(-params_.shift, params_.shift);
+    outline_.corners.emplace_back(columns_.at(corner.first) + dx, rows_.at(corner.second) + dy);
+  }
+  void StartsHere() { outline_.start_edge = outline_.corners.size(); }
+  TrackOutline Finish() { return std::move(outline_); }
+
+ private:
+  const OutlineParams& params_;
+  TrackRandom& random_;
+  std::map<int, double> columns_;
+  std::map<int, double> rows_;
+  TrackOutline outline_;
+};
+
 }  // namespace
 
 TrackOutline RandomOutline(const OutlineParams& params, TrackRandom& random) {
-  const auto straights = Straights(Boundary(GrowCells(params.edges, random)));
+  const std::vector<Cell> corners = Boundary(GrowCells(params.edges, random));
+  const auto straights = Straights(corners);
   const auto longest =
       std::max_element(straights.begin(), straights.end(),
-                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
-  TrackOutline outline;
-  for (auto straight = straights.begin(); straight != straights.end(); ++straight) {
-    if (straight == longest) outline.start_edge = outline.corners.size();
-    for (size_t i = 0; i < straight->size(); ++i) {
-      if (i > 0 && (straight == longest || random.Chance(params.merge))) continue;
-      const auto& [x, y] = (*straight)[i];
-      const double dx = random.Uniform(-params.shift, params.shift);
-      const double dy = random.Uniform(-params.shift, params.shift);
-      outline.corners.emplace_back(x * params.cell + dx, y * params.cell + dy);
+                       [](const auto& a, const auto& b) { return a.size() < b.size(); }) -
+      straights.begin();
+  OutlineBuilder builder(corners, params, random);
+  bool kept = true;
+  for (size_t i = 0; i < straights.size(); ++i) {
+    const size_t before = (i + straights.size() - 1) % straights.size();
+    const bool starts = i == static_cast<size_t>(longest);
+    const bool opposite = BendBefore(straights, i) != BendBefore(straights, before);
+    const bool of_start = starts || before == static_cast<size_t>(longest);  // both its ends stay
+    kept = !kept || !opposite || of_start || !random.Chance(params.shortcut);
+    if (starts) builder.StartsHere();
+    if (kept) builder.Add(straights[i].front());
+    for (size_t k = 1; k < straights[i].size(); ++k) {
+      if (!starts && !random.Chance(params.merge)) builder.Add(straights[i][k]);
     }
   }
-  return outline;
+  return builder.Finish();
 }
 
 }  // namespace hairpin

@@ -16,14 +16,17 @@ struct TrackOutline {
 };
 
 struct OutlineParams {
-  size_t edges = 20;   // of the grid along the boundary, at least
-  double cell = 13.0;  // m, side of a square of the grid
-  double shift = 2.0;  // m, by which a corner leaves the grid in x and y at most
+  size_t edges = 20;          // of the grid along the boundary, at least
+  double min_spacing = 11.0;  // m between neighbouring lines of the grid, each drawn at random
+  double max_spacing = 20.0;
+  double shift = 2.0;  // m by which a corner leaves the grid in x and y at most
   double merge = 0.6;  // probability that a corner in mid-straight is left out
+  double shortcut =
+      0.5;  // probability that the second of two opposite bends is left out: a diagonal instead
 };
 
-/// The boundary of a random clump of grid squares without holes. Its longest straight is the start
-/// edge.
+/// The boundary of a random clump of cells of an uneven grid, without holes. Its longest straight
+/// is the start edge.
 TrackOutline RandomOutline(const OutlineParams& params, TrackRandom& random);
 
 }  // namespace hairpin
