@@ -1,5 +1,6 @@
 #include "common/geometry.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
