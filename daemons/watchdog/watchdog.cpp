@@ -59,8 +59,8 @@ Watchdog::Watchdog(const WatchdogParams& params, const std::vector<SourceSpec>& 
 }
 
 std::optional<WatchdogStatus> Watchdog::Hear(size_t source, const Stamp& stamp) {
-  if (MovesTimeTooFar(source, stamp)) return std::nullopt;
   const int64_t before = now_;
+  if (MovesTimeTooFar(source, stamp)) return std::nullopt;
   Take(source, stamp);
   return now_ > before ? Step() : std::nullopt;
 }
