@@ -42,18 +42,21 @@ void PathFeatures::Deviation::Add(double value) {
 
 double PathFeatures::Deviation::value() const { return count == 0 ? 0.0 : std::sqrt(squares / count); }
 
-void PathFeatures::CrossEdge(const Eigen::Vector2d& midpoint, double width, double min_segment) {
+void PathFeatures::CrossEdge(const Eigen::Vector2d& left, const Eigen::Vector2d& right, double min_segment) {
+  const Eigen::Vector2d midpoint = 0.5 * (left + right);
   length_ += (midpoint - end_).norm();
   end_ = midpoint;
   ++edges_;
-  width_.Add(width);
   const Eigen::Vector2d part = midpoint - anchor_;
   const double part_length = part.norm();
-  if (part_length == 0.0 || part_length < min_segment) return;
-  const Eigen::Vector2d direction = part / part_length;
-  least_cosine_ = std::min(least_cosine_, direction.dot(direction_));
-  direction_ = direction;
-  anchor_ = midpoint;
+  if (part_length > 0.0 && part_length >= min_segment) {
+    const Eigen::Vector2d direction = part / part_length;
+    least_cosine_ = std::min(least_cosine_, direction.dot(direction_));
+    direction_ = direction;
+    anchor_ = midpoint;
+  }
+  const Eigen::Vector2d across = left - right;
+  width_.Add(std::abs(direction_.x() * across.y() - direction_.y() * across.x()));
 }
 
 FeatureValues PathFeatures::values() const {

@@ -54,8 +54,9 @@ class PathFeatures {
 
   void AddLeftSpacing(double distance) { left_.Add(distance); }
   void AddRightSpacing(double distance) { right_.Add(distance); }
-  /// Crosses an edge of length `width` at its midpoint.
-  void CrossEdge(const Eigen::Vector2d& midpoint, double width, double min_segment);
+  /// Crosses the edge between two cones at its midpoint. The track is as wide as the edge is across the path's direction:
+  /// every second edge stands askew.
+  void CrossEdge(const Eigen::Vector2d& left, const Eigen::Vector2d& right, double min_segment);
 
   /// F_1 to F_6, not cut off.
   FeatureValues values() const;

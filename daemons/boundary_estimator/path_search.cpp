@@ -149,7 +149,7 @@ void PathSearch::CrossAndKeep(const Problem& problem, Node& node) {
   const double width = (left - right).norm();
   const bool before_first_gate = node.features.edges() == 0;
   if (width < params_.min_width || (width > params_.max_width && !before_first_gate)) return;
-  if (width <= params_.max_width) node.features.CrossEdge(0.5 * (left + right), width, score_params_.min_segment);
+  if (width <= params_.max_width) node.features.CrossEdge(left, right, score_params_.min_segment);
   if (node.features.least_cosine() < least_cosine_) return;
   node.log_posterior = Score(node.features.values(), node.log_likelihood, score_params_).log_posterior();
   nodes_.push_back(node);

@@ -52,7 +52,7 @@ PathScore ScoreOf(const Scene& scene, const Stretch& stretch, const PathScorePar
       log_likelihood += scene.ratios[static_cast<size_t>(right)].right;
       last.right = right;
     }
-    features.CrossEdge(stretch.gates[i].middle(), stretch.gates[i].width(), params.min_segment);
+    features.CrossEdge(stretch.gates[i].left, stretch.gates[i].right, params.min_segment);
   }
   return Score(features.values(), log_likelihood, params);
 }
