@@ -18,6 +18,20 @@ Side OtherThan(Side side) { return side == Side::kLeft ? Side::kRight : Side::kL
 
 int ConeOf(const CrossedEdge& edge, Side side) { return side == Side::kLeft ? edge.left : edge.right; }
 
+// True if a cone that is surely of the other side stands close to `position` on the outside of the side, which leads along
+// `along`: then `position` bounds another stretch of track.
+bool BoundsAnotherStretch(const Scene& scene, Side side, const Eigen::Vector2d& position, const Eigen::Vector2d& along,
+                          const OneSidedParams& params) {
+  for (size_t i = 0; i < scene.positions.size(); ++i) {
+    if (RatioOf(scene.ratios[i], side) >= params.min_log_ratio) continue;
+    const Eigen::Vector2d offset = scene.positions[i] - position;
+    const double to_left = along.x() * offset.y() - along.y() * offset.x();
+    const double outward = side == Side::kLeft ? to_left : -to_left;
+    if (outward > params.min_spacing && offset.norm() < params.max_spacing) return true;
+  }
+  return false;
+}
+
 // The cone next to `from` that may belong to the side, within the turn allowed of `direction`. A cone that lies askew counts
 // as farther: another stretch of track may be as near as this side's own next cone.
 std::optional<int> NextCone(const Scene& scene, Side side, const Eigen::Vector2d& from, const Eigen::Vector2d& direction,
@@ -32,6 +46,7 @@ std::optional<int> NextCone(const Scene& scene, Side side, const Eigen::Vector2d
     const double cosine = step.dot(direction) / distance;
     if (distance < params.min_spacing || distance > params.max_spacing || cosine < least_cosine) continue;
     if (distance / cosine >= least) continue;
+    if (BoundsAnotherStretch(scene, side, scene.positions[i], step / distance, params)) continue;
     nearest = static_cast<int>(i);
     least = distance / cosine;
   }
