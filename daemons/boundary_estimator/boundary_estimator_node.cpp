@@ -119,7 +119,7 @@ OneSidedParams LoadOneSidedParams(const Config& config, double min_spacing) {
   OneSidedParams params;
   params.min_spacing = min_spacing;
   params.max_spacing = config.Number("max_spacing_m", {1.0, 50.0});
-  params.max_turn = config.Number("max_turn_rad", {0.1, 3.0});
+  params.max_turn = config.Number("max_turn_rad", {0.1, 1.5});
   params.min_log_ratio = config.Number("min_log_ratio", {-100.0, 0.0});
   params.max_jump = config.Number("max_jump_m", {1.0, 50.0});
   params.log_penalty = config.Number("log_penalty", {0.0, 1000.0});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -17,19 +18,37 @@ Side OtherThan(Side side) { return side == Side::kLeft ? Side::kRight : Side::kL
 
 int ConeOf(const CrossedEdge& edge, Side side) { return side == Side::kLeft ? edge.left : edge.right; }
 
-// The nearest cone from `from` on that may belong to the side, within the turn allowed of `direction`.
+// True if a cone that is surely of the other side stands close to `position` on the outside of the side, which leads along
+// `along`: then `position` bounds another stretch of track.
+bool BoundsAnotherStretch(const Scene& scene, Side side, const Eigen::Vector2d& position, const Eigen::Vector2d& along,
+                          const OneSidedParams& params) {
+  for (size_t i = 0; i < scene.positions.size(); ++i) {
+    if (RatioOf(scene.ratios[i], side) >= params.min_log_ratio) continue;
+    const Eigen::Vector2d offset = scene.positions[i] - position;
+    const double to_left = along.x() * offset.y() - along.y() * offset.x();
+    const double outward = side == Side::kLeft ? to_left : -to_left;
+    if (outward > params.min_spacing && offset.norm() < params.max_spacing) return true;
+  }
+  return false;
+}
+
+// The cone next to `from` that may belong to the side, within the turn allowed of `direction`. A cone that lies askew counts
+// as farther: another stretch of track may be as near as this side's own next cone.
 std::optional<int> NextCone(const Scene& scene, Side side, const Eigen::Vector2d& from, const Eigen::Vector2d& direction,
                             const std::vector<bool>& taken, const OneSidedParams& params) {
   const double least_cosine = std::cos(params.max_turn);
   std::optional<int> nearest;
-  double least = params.max_spacing;
+  double least = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < scene.positions.size(); ++i) {
     if (taken[i] || RatioOf(scene.ratios[i], side) < params.min_log_ratio) continue;
     const Eigen::Vector2d step = scene.positions[i] - from;
     const double distance = step.norm();
-    if (distance < params.min_spacing || distance > least || step.dot(direction) < least_cosine * distance) continue;
+    const double cosine = step.dot(direction) / distance;
+    if (distance < params.min_spacing || distance > params.max_spacing || cosine < least_cosine) continue;
+    if (distance / cosine >= least) continue;
+    if (BoundsAnotherStretch(scene, side, scene.positions[i], step / distance, params)) continue;
     nearest = static_cast<int>(i);
-    least = distance;
+    least = distance / cosine;
   }
   return nearest;
 }
@@ -102,7 +121,7 @@ void Check(const OneSidedParams& params) {
   };
   require(params.min_spacing > 0.0, "min_spacing must be > 0");
   require(params.max_spacing > params.min_spacing, "max_spacing must be > min_spacing");
-  require(params.max_turn > 0.0 && params.max_turn < std::numbers::pi, "max_turn must be in (0, pi)");
+  require(params.max_turn > 0.0 && params.max_turn < 0.5 * std::numbers::pi, "max_turn must be in (0, pi/2)");
   require(params.min_log_ratio <= 0.0, "min_log_ratio must be <= 0");
   require(params.max_jump > 0.0, "max_jump must be > 0");
   require(params.log_penalty >= 0.0, "log_penalty must be >= 0");

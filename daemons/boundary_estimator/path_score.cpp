@@ -42,11 +42,17 @@ void PathFeatures::Deviation::Add(double value) {
 
 double PathFeatures::Deviation::value() const { return count == 0 ? 0.0 : std::sqrt(squares / count); }
 
-void PathFeatures::CrossEdge(const Eigen::Vector2d& midpoint, double width, double min_segment) {
+double DistanceToSegment(const Eigen::Vector2d& point, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  const Eigen::Vector2d step = to - from;
+  const double squared = step.squaredNorm();
+  const double ratio = squared > 0.0 ? std::clamp((point - from).dot(step) / squared, 0.0, 1.0) : 0.0;
+  return (point - from - ratio * step).norm();
+}
+
+void PathFeatures::Cross(const Eigen::Vector2d& midpoint, double min_segment) {
   length_ += (midpoint - end_).norm();
   end_ = midpoint;
   ++edges_;
-  width_.Add(width);
   const Eigen::Vector2d part = midpoint - anchor_;
   const double part_length = part.norm();
   if (part_length == 0.0 || part_length < min_segment) return;

@@ -44,6 +44,8 @@ struct SideLogRatios {
 /// these ratios differ from path to path [paper III-D, likelihood].
 SideLogRatios ToSideLogRatios(const ColourDistribution& colour, double min_probability);
 
+double DistanceToSegment(const Eigen::Vector2d& point, const Eigen::Vector2d& from, const Eigen::Vector2d& to);
+
 /// The features of a path that grows edge by edge, in constant time and memory for each edge.
 class PathFeatures {
  public:
@@ -54,8 +56,10 @@ class PathFeatures {
 
   void AddLeftSpacing(double distance) { left_.Add(distance); }
   void AddRightSpacing(double distance) { right_.Add(distance); }
-  /// Crosses an edge of length `width` at its midpoint.
-  void CrossEdge(const Eigen::Vector2d& midpoint, double width, double min_segment);
+  /// Width of the track where one side went on from cone to cone: the distance of the other side's cone from that stretch.
+  void AddWidth(double width) { width_.Add(width); }
+  /// Crosses an edge at its midpoint.
+  void Cross(const Eigen::Vector2d& midpoint, double min_segment);
 
   /// F_1 to F_6, not cut off.
   FeatureValues values() const;

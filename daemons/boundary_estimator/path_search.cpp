@@ -128,6 +128,11 @@ void PathSearch::AddChild(const Problem& problem, int parent, int vertex, bool o
   const bool between_gates = node.features.edges() > 0;
   if (between_gates && spacing > params_.max_spacing) return;
   const bool counts = between_gates && spacing >= score_params_.min_spacing;
+  if (between_gates) {
+    const int opposite = on_left ? node.edge.right : node.edge.left;
+    node.features.AddWidth(DistanceToSegment(problem.positions[Index(opposite)], problem.positions[Index(side)],
+                                             problem.positions[Index(vertex)]));
+  }
   side = vertex;
   node.cones.set(Index(vertex));
   node.triangles.set(Index(node.next_triangle));
@@ -149,7 +154,7 @@ void PathSearch::CrossAndKeep(const Problem& problem, Node& node) {
   const double width = (left - right).norm();
   const bool before_first_gate = node.features.edges() == 0;
   if (width < params_.min_width || (width > params_.max_width && !before_first_gate)) return;
-  if (width <= params_.max_width) node.features.CrossEdge(0.5 * (left + right), width, score_params_.min_segment);
+  if (width <= params_.max_width) node.features.Cross(0.5 * (left + right), score_params_.min_segment);
   if (node.features.least_cosine() < least_cosine_) return;
   node.log_posterior = Score(node.features.values(), node.log_likelihood, score_params_).log_posterior();
   nodes_.push_back(node);

@@ -7,6 +7,11 @@ namespace {
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
+double WidthBetween(const Gate& before, const Gate& gate) {
+  if (gate.left == before.left) return DistanceToSegment(gate.left, before.right, gate.right);
+  return DistanceToSegment(gate.right, before.left, gate.left);
+}
+
 }  // namespace
 
 void Stretch::Append(const CrossedEdge& edge, const Gate& gate) {
@@ -52,7 +57,8 @@ PathScore ScoreOf(const Scene& scene, const Stretch& stretch, const PathScorePar
       log_likelihood += scene.ratios[static_cast<size_t>(right)].right;
       last.right = right;
     }
-    features.CrossEdge(stretch.gates[i].middle(), stretch.gates[i].width(), params.min_segment);
+    if (i > 0) features.AddWidth(WidthBetween(stretch.gates[i - 1], stretch.gates[i]));
+    features.Cross(stretch.gates[i].middle(), params.min_segment);
   }
   return Score(features.values(), log_likelihood, params);
 }
