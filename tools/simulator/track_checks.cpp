@@ -1,5 +1,7 @@
 #include "tools/simulator/track_checks.hpp"
 
+#include <algorithm>
+#include <array>
 #include <iomanip>
 #include <sstream>
 
@@ -147,8 +149,18 @@ Problem FindWrongDirection(const Track& track) {
   return std::nullopt;
 }
 
-/// The lines end on the sides; a closed track's sides begin behind its start line.
+/// The lines lie across the track and end on the sides; a closed track's sides begin behind its
+/// start line.
 Problem FindLineProblem(const Track& track) {
+  const auto crosses_track = [&track](const GateLine& line) {
+    return IsOnTrack(track, 0.5 * (line.left + line.right));
+  };
+  if (!crosses_track(track.start_line)) {
+    return TrackProblem{TrackPart::kStartLine, 0, "the start line does not lie across the track"};
+  }
+  if (!crosses_track(track.finish_line)) {
+    return TrackProblem{TrackPart::kFinishLine, 0, "the finish line does not lie across the track"};
+  }
   for (const Side& side : SidesOf(track)) {
     const Polyline line = PositionsOf(side.cones);
     const Polyline at_start =
@@ -170,14 +182,16 @@ Problem FindLineProblem(const Track& track) {
 
 Problem FindNarrowing(const Track& track) {
   constexpr double kSpacing = 0.25;
-  for (const CrossSection& section : CrossSections(track, kSpacing)) {
-    if (section.width() >= kMinWidth) continue;
-    const Polyline left = PositionsOf(track.left);
-    return TrackProblem{TrackPart::kLeft, Nearest(left, track.closed, section.left).segment,
-                        "the track is " + Metres(section.width()) + " wide" + At(section.middle()) +
-                            ", less than " + Metres(kMinWidth)};
-  }
-  return std::nullopt;
+  const std::vector<CrossSection> sections = CrossSections(track, kSpacing);
+  const auto narrowest =
+      std::min_element(sections.begin(), sections.end(),
+                       [](const auto& a, const auto& b) { return a.width() < b.width(); });
+  if (narrowest->width() >= kMinWidth) return std::nullopt;
+  const PolylinePoint near = Nearest(PositionsOf(track.left), track.closed, narrowest->left);
+  const size_t cone = (near.segment + (near.fraction > 0.5 ? 1 : 0)) % track.left.size();
+  return TrackProblem{TrackPart::kLeft, cone,
+                      "the track is " + Metres(narrowest->width()) + " wide" +
+                          At(narrowest->middle()) + ", less than " + Metres(kMinWidth)};
 }
 
 }  // namespace

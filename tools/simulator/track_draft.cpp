@@ -1,6 +1,7 @@
 #include "tools/simulator/track_draft.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "tools/simulator/track_geometry.hpp"
 

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "tools/simulator/track_draft.hpp"

@@ -1,6 +1,5 @@
 #include "tools/simulator/track_formats.hpp"
 
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <sstream>

@@ -1,6 +1,7 @@
 #include "tools/simulator/track_outline.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <utility>

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <numbers>
 #include <sstream>
 
@@ -16,26 +18,22 @@ constexpr double kRounding = 0.01;  // m, the tolerance of every bound below
 constexpr double kMinWidthByRule = 3.0;
 constexpr double kMaxSpacing = 5.0;
 constexpr double kMaxCornerSpacing = 4.0;  // "less in corners", which the rules leave open
-constexpr double kCornerBend = 25.0;       // degrees from one cone to the next that make a corner
+constexpr double kCornerBend = 25.0 / 180.0 * std::numbers::pi;  // rad at a cone that make a corner
 constexpr double kMaxStraight = 80.0;
-constexpr double kStraightBow = 0.5;    // m that a straight's line may leave its chord
-constexpr double kHairpinTurn = 150.0;  // degrees that make a hairpin
+constexpr double kStraightBow = 0.5;  // m that a straight's line may leave its chord
+constexpr double kHairpinTurn = 150.0 / 180.0 * std::numbers::pi;  // rad that make a hairpin
 constexpr double kMinHairpinDiameter = 9.0;
-constexpr double kConstantTurn =
-    90.0;  // degrees that make a turn which its diameter is measured of
+constexpr double kConstantTurn = 0.5 * std::numbers::pi;  // rad over which a turn is measured
 constexpr double kMaxTurnDiameter = 50.0;
 constexpr double kMinLap = 200.0;
 constexpr double kMaxLap = 500.0;
 constexpr double kMinApart = 3.0;      // m between cones of different stretches, as wide as a track
 constexpr double kSameStretch = 12.0;  // m along the track within which cones are of one stretch
-constexpr double kGateReach =
-    3.0;  // m along the track from the start line to its large orange cones
+constexpr double kGateReach = 3.0;     // m from an end of the line to its large orange cones
 constexpr double kMinStartDistance = 4.0;  // m from the waiting car to the line: 6 by the rules
 constexpr double kMaxStartDistance = 8.0;
 constexpr double kStraightPastLine = 5.0;  // m
 constexpr double kMaxGateBow = 0.3;  // m off a straight, from the waiting car to past the line
-
-double Degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 std::string Figure(double value) {
   std::ostringstream text;
@@ -78,7 +76,7 @@ void CheckSpacing(const std::string& side, const Polyline& line, bool closed, bo
     const double spacing = (SegmentEnd(line, i) - line[i]).norm();
     const double bend = std::max(std::abs(BendAt(line, closed, i)),
                                  std::abs(BendAt(line, closed, (i + 1) % line.size())));
-    if ((Degrees(bend) > kCornerBend) != corners || spacing <= bound + kRounding) continue;
+    if ((bend > kCornerBend) != corners || spacing <= bound + kRounding) continue;
     ++count;
     if (spacing > widest) where = i;
     widest = std::max(widest, spacing);
@@ -150,24 +148,36 @@ std::optional<double> DiameterOfTurn(const Polyline& line, size_t i, double angl
   return std::nullopt;
 }
 
+/// A turn is met as a run of segments from which a quarter circle begins; its tightest quarter
+/// counts.
+void CheckTurnDiameters(const Polyline& line, double hand, Violations& violations) {
+  const size_t n = line.size();
+  std::vector<std::optional<double>> diameters;
+  for (size_t i = 0; i < n; ++i) diameters.push_back(DiameterOfTurn(line, i, kConstantTurn, hand));
+  // From a break on, so that no run is cut by the end of the list.
+  const auto broken = std::find(diameters.begin(), diameters.end(), std::nullopt);
+  const auto first = static_cast<size_t>(broken - diameters.begin()) % n;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  double tightest = kNone;
+  for (size_t k = 0; k <= n; ++k) {
+    const auto& diameter = diameters[(first + k) % n];
+    if (diameter && k < n) {
+      tightest = std::min(tightest, *diameter);
+      continue;
+    }
+    if (tightest != kNone && tightest > kMaxTurnDiameter + kRounding) {
+      violations.push_back("a turn of " + Figure(tightest) + " m outside diameter before" +
+                           At(line[(first + k) % n]) + ", more than 50 m");
+    }
+    tightest = kNone;
+  }
+}
+
 /// Judges turns to one hand (1 left, -1 right) by the side outside of them.
 void CheckTurns(const std::vector<TrackCone>& outside, double hand, Violations& violations) {
   const Polyline line = PositionsOf(outside);
-  const size_t n = line.size();
-  std::optional<double> tightest;  // of this turn, which one meets segment by segment
-  for (size_t i = 0; i <= n; ++i) {
-    const auto diameter = i < n ? DiameterOfTurn(line, i, kConstantTurn, hand) : std::nullopt;
-    if (diameter) {
-      tightest = std::min(*diameter, tightest.value_or(*diameter));
-    } else if (tightest) {
-      if (*tightest > kMaxTurnDiameter + kRounding) {
-        violations.push_back("a turn of " + Figure(*tightest) + " m outside diameter before" +
-                             At(line[i % n]) + ", more than 50 m");
-      }
-      tightest.reset();
-    }
-  }
-  for (size_t i = 0; i < n; ++i) {
+  CheckTurnDiameters(line, hand, violations);
+  for (size_t i = 0; i < line.size(); ++i) {
     const auto diameter = DiameterOfTurn(line, i, kHairpinTurn, hand);
     if (!diameter || *diameter >= kMinHairpinDiameter - kRounding) continue;
     violations.push_back("a hairpin of " + Figure(*diameter) + " m outside diameter" + At(line[i]) +

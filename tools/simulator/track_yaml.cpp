@@ -1,5 +1,6 @@
 #include "tools/simulator/track_yaml.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <set>

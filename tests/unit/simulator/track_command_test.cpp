@@ -31,7 +31,7 @@ Outcome Command(std::vector<std::string> words) {
 TEST(TrackCommand, GenerateWritesATrackAndDescribesItAsJson) {
   const TemporaryFile file(".yaml");
   const Outcome outcome = Command({"generate", "--seed", "3", "--clutter", "5", "--name", "mine",
-                               "--out", file.path(), "--json"});
+                                   "--out", file.path(), "--json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const auto told = nlohmann::json::parse(outcome.out);
   const Track track = LoadTrack(file.path());
@@ -49,7 +49,8 @@ TEST(TrackCommand, CheckTellsFormatLengthConesAndRules) {
 }
 
 TEST(TrackCommand, CheckGoesOnAfterARefusedFileAndExitsWithBadInput) {
-  const Outcome outcome = Command({"check", "/nonexistent.yaml", Fixture("oval_fssim.yaml"), "--json"});
+  const Outcome outcome =
+      Command({"check", "/nonexistent.yaml", Fixture("oval_fssim.yaml"), "--json"});
   EXPECT_EQ(outcome.code, 78);
   EXPECT_THAT(outcome.err, StartsWith("/nonexistent.yaml:1: cannot be read"));
   const auto tracks = nlohmann::json::parse(outcome.out).at("tracks");

@@ -84,8 +84,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Layout{"acceleration.yaml", 33, 33, 1, false, 150.3, 1.98},
                       Layout{"small_track.csv", 37, 40, 0, true, 149.7, 5.3},
                       Layout{"Hairpin_02_03_2023.csv", 23, 12, 0, true, 54.5, 3.9}),
-    [](const auto& info) {
-      const std::string file = info.param.file;
+    [](const auto& test) {
+      const std::string file = test.param.file;
       return file.substr(0, file.find('.'));
     });
 

@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"UnknownColour", kOwn, "y_m: 2.8, colour: blue", "y_m: 2.8, colour: mauve", "mauve",
                "no such colour: mauve"},
         Change{"BrokenYaml", kOwn, "x_m: 13, y_m: 2.8, colour: blue}",
-               "x_m: 13, y_m: 2.8, colour: blue", "  - {x_m: 15.2", "no YAML"},
+               "x_m: 13, y_m: 2.8, colour: blue", "  - {x_m: 16,", "no YAML"},
         Change{"YellowOnTheLeft", kOwn, "y_m: 2.8, colour: blue", "y_m: 2.8, colour: yellow",
                "y_m: 2.8, colour: yellow", "yellow cone on the left side"},
         Change{"DoubledCone", kOwn, "{x_m: 13, y_m: 2.8,", "{x_m: 10.05, y_m: 2.05,", "10.05",
@@ -78,10 +78,12 @@ INSTANTIATE_TEST_SUITE_P(
                "a cone stands here already"},
         Change{"SidesThatCross", kOwn, "{x_m: 16, y_m: 8,", "{x_m: 21, y_m: 8,",
                "{x_m: 15.2, y_m: 5,", "left side crosses the right side"},
-        Change{"SideThatCrossesItself", kOwn, "{x_m: 3.5, y_m: 14,", "{x_m: 8.5, y_m: 15.5,",
-               "{x_m: 8.5, y_m: 15.5", "crosses itself"},
+        Change{"SideThatCrossesItself", kOwn, "{x_m: 7, y_m: 14,", "{x_m: 2, y_m: 14,",
+               "{x_m: 3.5, y_m: 14", "left side crosses itself"},
         Change{"Narrow", kOwn, "{x_m: 0, y_m: 14,", "{x_m: 0, y_m: 16.5,", "y_m: 16.5",
                "less than 2.00 m"},
+        Change{"LineBesideTheTrack", kOwn, "right_m: [6, -2]", "right_m: [6, 8]", "start_line",
+               "the start line does not lie across the track"},
         Change{"StartOutside", kOwn, "start: {x_m: 0, y_m: 0,", "start: {x_m: 0, y_m: 7,",
                "start:", "the start is outside the track"},
         Change{"StartBackwards", kOwn, "yaw_rad: 0}", "yaw_rad: 3.14}",
@@ -94,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"FinishOfALap", kOwn, "left:\n",
                "finish_line: {left_m: [0, 2], right_m: [0, -2]}\nleft:\n", "finish_line",
                "finishes at its start line"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Foreign, TrackRefusal,
@@ -107,8 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"PacsimOddPosts", kPacsim,
                "  - position: [6.0, -5.0, 0.0]\n    class: timekeeping\n", "", "time_keeping",
                "pairs"},
-        Change{"PacsimLineThatMissesASide", kPacsim, "[6.0, -5.0, 0.0]", "[40.0, 5.0, 0.0]",
-               "[40.0", "the line across the track does not reach"},
+        Change{"PacsimLineThatMissesASide", kPacsim, "[6.0, 5.0, 0.0]", "[60.0, -5.0, 0.0]",
+               "[6.0, -5.0", "the line across the track does not reach"},
         Change{"PacsimGap", kPacsim,
                "  - position: [3.5, 14, 0.0]\n    class: blue\n  - position: [0, 14, 0.0]\n    "
                "class: blue\n",
@@ -129,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
                "car_start,0,0,0,0,0,0\ncar_start,0,0,0,0,0,1\n", "0,0,1", "car_start stands twice"},
         Change{"EufsOtherHeading", kEufs, "tag,x,y,direction", "tag,y,x,direction", "tag,",
                "the heading must begin with"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 
 TEST(TrackRefusals, AFileThatCannotBeReadIsNamed) {
   for (const std::string file : {"/nonexistent/track.yaml", "/tmp"}) {
