@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <stdexcept>
+
 #include "tests/unit/path_tracker/closed_loop.hpp"
 
 namespace hairpin {
@@ -36,10 +39,16 @@ TEST(WheelForces, ShareByLoadSoThatNoAxleUsesMoreGripThanTheOther) {
     const double g = 9.81;
     const double front_load = (g * car.rear_axle - acceleration * car.cog_height) / car.wheelbase();
     const double rear_load = g - front_load;
-    const double front_force =
-        actuation.wheel_torque[0] + actuation.brake * car.front_brake_share * 0.0;
-    EXPECT_NEAR(front_force / front_load, actuation.wheel_torque[2] / rear_load, 1e-9);
+    EXPECT_NEAR(actuation.wheel_torque[0] / front_load, actuation.wheel_torque[2] / rear_load,
+                1e-9);
   }
+}
+
+TEST(WheelForces, RefuseWrongParameters) {
+  const PathTrackerParams good = test::ShippedParams();
+  WheelForcesParams params = good.forces;
+  params.min_braking = -1.0;
+  EXPECT_THROW(WheelForces(params, good.car), std::invalid_argument);
 }
 
 TEST(WheelForces, RegenerateFirstAndFadeOutTowardStandstill) {

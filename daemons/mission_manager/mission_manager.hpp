@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/geometry.hpp"
+#include "common/pose_history.hpp"
+#include "daemons/mission_manager/as_state_machine.hpp"
+#include "daemons/mission_manager/lap_counter.hpp"
+#include "daemons/mission_manager/rate_monitor.hpp"
+
+namespace hairpin {
+
+/// A channel that must run before the car may be Ready; from the channel table.
+struct NeededChannel {
+  std::string name;
+  double rate = 0.0;      // [Hz]
+  double deadline = 0.0;  // [s]
+};
+
+struct MissionManagerParams {
+  std::vector<NeededChannel> needed_channels;
+  RateMonitorParams rate;
+  LapCounterParams laps;
+  double go_delay = 0.0;          // [s], >= 0
+  int autocross_laps = 0;         // >= 1
+  double standstill_speed = 0.0;  // [m/s], > 0
+  double standstill_time = 0.0;   // slower than that for so long is standing [s], >= 0
+  double history = 0.0;           // of poses, longer than a local map is late [s], > 0
+  std::string build;              // of this daemon; one that differs in another refuses Ready
+  int64_t types_hash = 0;
+};
+
+/// Switches, brakes and RES; `as` leaves out what this class adds itself.
+struct VehicleInput {
+  AsInput as;
+  int32_t mission = 0;  // as in vehicle_t
+  double speed = 0.0;   // [m/s]
+};
+
+/// Newest word of the watchdog.
+struct SupervisionInput {
+  bool blind = false;  // no map mode
+  bool stop = false;   // a controlled stop or more is asked for
+  std::string reason;
+};
+
+/// State of the mission; fields as in as_state_t.
+struct MissionReport {
+  AsState state = AsState::kOff;
+  int laps = 0;
+  int laps_to_drive = 0;
+  bool mission_finished = false;
+  double distance = 0.0;  // [m]
+  std::string reason;
+};
+
+/// Starts, counts and ends the mission: the rules' state machine fed with whether the software
+/// runs, and a lap counter fed with dead reckoning and the cones of the local map. The start pose
+/// is where the car stands when Driving begins.
+class MissionManager {
+ public:
+  /// Throws std::invalid_argument for parameters out of their bounds.
+  explicit MissionManager(const MissionManagerParams& params);
+
+  /// A needed channel was heard when data time was `now`. Throws std::out_of_range for a name not
+  /// among them.
+  void Heard(const std::string& channel, int64_t now) { monitors_.at(channel).Heard(now); }
+  void TakeSupervision(const SupervisionInput& supervision) { supervision_ = supervision; }
+  /// Which build another daemon runs.
+  void TakeBuild(const std::string& daemon, const std::string& build, int64_t types_hash);
+  /// Returns false, and ignores it, where the time does not increase.
+  bool TakeVelocity(int64_t utime, const Twist2& velocity);
+  /// Cones in the mapper's local frame, with the pose that it had at `utime`. Returns false, and
+  /// ignores it, where the time is outside the pose history.
+  bool TakeLocalMap(int64_t utime, const Pose2& T_local_base, std::vector<GateCone> cones_local);
+
+  /// The state when data time is `now`. Returns empty where the vehicle's time does not increase.
+  std::optional<MissionReport> Update(const VehicleInput& vehicle, int64_t now);
+
+ private:
+  /// The drive that began with Driving.
+  struct Drive {
+    Pose2 T_own_start;
+    double start_distance;
+    LapCounter laps;
+  };
+
+  std::string SystemProblem(int64_t now) const;
+  bool Stands(const VehicleInput& vehicle);
+  bool MissionFinished() const;
+  std::string Reason() const;
+
+  MissionManagerParams params_;
+  AsStateMachine machine_;
+  PoseHistory history_;
+  std::map<std::string, RateMonitor> monitors_;
+  std::optional<SupervisionInput> supervision_;
+  std::map<std::string, bool> same_build_;  // by daemon
+  std::optional<Drive> drive_;
+  int64_t last_utime_ = 0;
+  int64_t moved_utime_ = 0;  // when the car was last not slow
+};
+
+/// Why a mission (numbered as in vehicle_t) cannot be driven by this software; empty: it can.
+std::string MissionProblem(int32_t mission);
+
+}  // namespace hairpin

@@ -1,0 +1,264 @@
+#include "daemons/mission_manager/mission_manager_node.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <optional>
+
+#include "common/daemon.hpp"
+
+namespace hairpin {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// The rest of the car, standing or driving a 200 m lap whose gate is 6 m ahead of the start.
+class MissionManagerNodeTest : public testing::Test {
+ protected:
+  MissionManagerNodeTest() {
+    vehicle.mission = vehicle_t::MISSION_AUTOCROSS;
+    vehicle.master_switch_on = vehicle.tractive_system_on = vehicle.shutdown_circuit_closed = 1;
+    vehicle.brakes_engaged = vehicle.brakes_ok = 1;
+    status.map_mode = pipeline_status_t::MODE_FUSION;
+    status.speed_cap_mps = 12.0;
+    others.Subscribe(channels::kAsState, [this](const as_state_t& message) {
+      EXPECT_EQ(message.utime, utime);
+      state = message;
+      ++states;
+    });
+  }
+
+  void Tick() {
+    utime += 10'000;
+    ++tick;
+    truth = truth * Integrate({speed, 0.0, speed * Curvature()}, 0.01);
+    distance += speed * 0.01;
+    if (velocity_runs) {
+      velocity_t velocity{};
+      velocity.utime = utime;
+      velocity.valid = 1;
+      velocity.vx_mps = speed;
+      velocity.yaw_rate_radps = speed * Curvature();
+      others.Publish(channels::kVelocity, velocity);
+    }
+    drive_command_t command{};
+    command.utime = utime;
+    others.Publish(channels::kDriveCommand, command);
+    if (tick % 2 == 0) {
+      status.utime = utime;
+      others.Publish(channels::kPipelineStatus, status);
+    }
+    if (tick % 10 == 0) PublishMapAndTrack();
+    if (tick % 5 == 0) {
+      vehicle.utime = utime;
+      vehicle.speed_mps = speed;
+      others.Publish(channels::kVehicle, vehicle);
+    }
+    transport.Drain();
+  }
+
+  void PublishMapAndTrack() {
+    local_map_t map{};
+    map.utime = utime - 100'000;
+    const Pose2 then = truth * Integrate({speed, 0.0, speed * Curvature()}, -0.1);
+    const Pose2 T_local_map{5.0, 9.0, 1.0};  // the mapper's frame is its own
+    const Pose2 T_local_base = T_local_map * then;
+    map.x_m = T_local_base.x;
+    map.y_m = T_local_base.y;
+    map.yaw_rad = T_local_base.yaw;
+    for (const double y : {1.7, -1.7}) {
+      const Eigen::Vector2d position = T_local_map * Eigen::Vector2d(6.0, y);
+      local_cone_t cone{};
+      cone.x_m = position.x();
+      cone.y_m = position.y();
+      cone.covariance_xx_m2 = cone.covariance_yy_m2 = 0.01;
+      cone.probability[cone_observation_t::ORANGE_LARGE] = 0.95F;
+      cone.existence = 0.99F;
+      map.cones.push_back(cone);
+    }
+    map.num_cones = static_cast<int32_t>(map.cones.size());
+    others.Publish(channels::kLocalMap, map);
+    track_t track{};
+    track.utime = map.utime;
+    others.Publish(channels::kTrack, track);
+  }
+
+  double Curvature() const {
+    const double s = std::fmod(distance, 50.0);
+    return s > 34.0 ? kPi / 2.0 / 16.0 : 0.0;
+  }
+
+  void Run(double seconds) {
+    for (int i = 0; i < static_cast<int>(std::lround(seconds * 100.0)); ++i) Tick();
+  }
+
+  void StartDriving() {
+    Run(8.0);
+    vehicle.res_go = 1;
+    Run(0.1);
+    vehicle.res_go = 0;
+    ASSERT_EQ(state->state, as_state_t::STATE_DRIVING) << state->reason;
+    vehicle.brakes_engaged = 0;
+  }
+
+  Transport transport{"memq://"};
+  Bus others{transport, "others", 1};
+  Bus bus{transport, "mission_manager", 2};
+  MissionManagerNode node{LoadMissionManagerParams(Config::Load(
+                              std::string(HAIRPIN_SOURCE_DIR) + "/config", "mission_manager")),
+                          bus};
+  vehicle_t vehicle{};
+  pipeline_status_t status{};
+  std::optional<as_state_t> state;
+  int states = 0;
+  int64_t utime = 1'700'000'000'000'000;
+  int tick = 0;
+  double speed = 0.0;
+  double distance = 0.0;
+  Pose2 truth;
+  bool velocity_runs = true;
+};
+
+TEST_F(MissionManagerNodeTest, AnswersEachVehicle) {
+  Run(2.0);
+  EXPECT_EQ(states, 40);
+}
+
+TEST_F(MissionManagerNodeTest, IsReadyWithinOneAndAHalfSecondsAndSaysWhyNotBefore) {
+  Run(0.5);
+  EXPECT_EQ(state->state, as_state_t::STATE_OFF);
+  EXPECT_EQ(state->reason, "VELOCITY has just begun");
+  Run(1.0);
+  EXPECT_EQ(state->state, as_state_t::STATE_READY) << state->reason;
+}
+
+TEST_F(MissionManagerNodeTest, DrivesOneLapStopsAndFinishes) {
+  StartDriving();
+  EXPECT_EQ(state->reason, "driving to the start line");
+  EXPECT_EQ(state->laps_to_drive, 1);
+  speed = 10.0;
+  Run(1.0);
+  EXPECT_EQ(state->reason, "driving lap 1 of 1");
+  Run(18.9);
+  EXPECT_EQ(state->lap, 0);
+  EXPECT_FALSE(state->mission_finished);
+  Run(0.8);
+  EXPECT_EQ(state->lap, 1);
+  EXPECT_TRUE(state->mission_finished);
+  EXPECT_EQ(state->state, as_state_t::STATE_DRIVING);
+  EXPECT_NEAR(state->distance_m, 207.0, 1.0);
+  speed = 0.0;
+  Run(0.4);
+  EXPECT_EQ(state->state, as_state_t::STATE_DRIVING);
+  Run(0.3);
+  EXPECT_EQ(state->state, as_state_t::STATE_FINISHED);
+}
+
+TEST_F(MissionManagerNodeTest, ResStopWhileDrivingIsAnEmergencyForGood) {
+  StartDriving();
+  speed = 10.0;
+  Run(2.0);
+  vehicle.res_stop = 1;
+  Run(0.05);
+  EXPECT_EQ(state->state, as_state_t::STATE_EMERGENCY);
+  vehicle.res_stop = 0;
+  speed = 0.0;
+  Run(2.0);
+  EXPECT_EQ(state->state, as_state_t::STATE_EMERGENCY);
+}
+
+TEST_F(MissionManagerNodeTest, RefusesOtherMissionsByName) {
+  vehicle.mission = vehicle_t::MISSION_SKIDPAD;
+  Run(3.0);
+  EXPECT_EQ(state->state, as_state_t::STATE_OFF);
+  EXPECT_EQ(state->reason, "mission skidpad cannot be driven yet");
+  EXPECT_EQ(state->mission, vehicle_t::MISSION_SKIDPAD);
+  vehicle.mission = vehicle_t::MISSION_UNKNOWN;
+  Run(0.1);
+  EXPECT_EQ(state->reason, "no mission is selected");
+}
+
+TEST_F(MissionManagerNodeTest, IsNotReadyWithoutAMapModeOrWhileTheWatchdogAsksForAStop) {
+  status.map_mode = pipeline_status_t::MODE_NONE;
+  status.reason = "all silent";
+  Run(3.0);
+  EXPECT_EQ(state->reason, "no perception pipeline is live: all silent");
+  status.map_mode = pipeline_status_t::MODE_FUSION;
+  status.level = pipeline_status_t::LEVEL_CONTROLLED_STOP;
+  Run(0.1);
+  EXPECT_EQ(state->reason, "the watchdog asks for a stop: all silent");
+  status.level = pipeline_status_t::LEVEL_LOG;
+  Run(0.1);
+  EXPECT_EQ(state->state, as_state_t::STATE_READY);
+}
+
+TEST_F(MissionManagerNodeTest, LosesReadyWithAChannelAndNamesIt) {
+  Run(3.0);
+  EXPECT_EQ(state->state, as_state_t::STATE_READY);
+  velocity_runs = false;
+  Run(0.2);
+  EXPECT_EQ(state->state, as_state_t::STATE_OFF);
+  EXPECT_EQ(state->reason, "VELOCITY is stale");
+}
+
+TEST_F(MissionManagerNodeTest, RefusesReadyWithADaemonOfAnotherBuild) {
+  heartbeat_t heartbeat{};
+  heartbeat.utime = utime;
+  heartbeat.daemon = "local_mapper";
+  heartbeat.build = BuildId();
+  heartbeat.types_hash = TypesHash();
+  others.Publish(channels::kHeartbeat, heartbeat);
+  Run(3.0);
+  EXPECT_EQ(state->state, as_state_t::STATE_READY);
+  heartbeat.types_hash += 1;
+  heartbeat.utime = utime;
+  others.Publish(channels::kHeartbeat, heartbeat);
+  Run(0.1);
+  EXPECT_EQ(state->reason, "local_mapper is of another build");
+}
+
+TEST_F(MissionManagerNodeTest, CountsWhatItRefuses) {
+  Run(1.0);
+  others.Publish(channels::kVehicle, vehicle);  // the same time again
+  velocity_t velocity{};
+  velocity.utime = utime;
+  velocity.valid = 1;
+  others.Publish(channels::kVelocity, velocity);
+  velocity.utime = utime + 5'000;
+  velocity.vx_mps = 1e6;
+  others.Publish(channels::kVelocity, velocity);
+  local_map_t map{};
+  map.utime = utime - 5'000'000;
+  others.Publish(channels::kLocalMap, map);
+  status.utime -= 40'000;
+  others.Publish(channels::kPipelineStatus, status);
+  const int before = states;
+  transport.Drain();
+  EXPECT_EQ(states, before);
+  for (const channel_health_t& health : bus.Health()) {
+    const int64_t expected = health.channel == "VELOCITY" ? 2
+                             : health.channel == "VEHICLE" || health.channel == "LOCAL_MAP" ||
+                                     health.channel == "PIPELINE_STATUS"
+                                 ? 1
+                                 : 0;
+    // The first local map came before any velocity of its time.
+    const int64_t early = health.channel == "LOCAL_MAP" ? 1 : 0;
+    EXPECT_EQ(health.refused, expected + early) << health.channel;
+  }
+}
+
+TEST(LoadMissionManagerParams, NamesEveryProblem) {
+  const Config config = Config::FromText("go_delay_s: -1\nready_after: 1.0\n", "x.yaml");
+  try {
+    LoadMissionManagerParams(config);
+    FAIL();
+  } catch (const ConfigError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("go_delay_s"), std::string::npos);
+    EXPECT_NE(what.find("did you mean ready_after_s?"), std::string::npos);
+    EXPECT_NE(what.find("autocross_laps: is missing"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace hairpin
