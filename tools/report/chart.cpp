@@ -97,10 +97,9 @@ void Chart::Band(double from_x, double to_x, std::string_view look, std::string_
 }
 
 void Chart::Legend(const std::vector<LegendEntry>& entries) {
-  constexpr double kLetter = 6.2;  // mean width of a letter of the legend
   double x = svg_.width() - kRight;
   for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
-    x -= kLetter * static_cast<double>(entry->text.size());
+    x -= LegendTextWidth(entry->text);
     svg_.Text({x, 22.0}, entry->text, "small");
     x -= 22.0;
     if (entry->is_line) {

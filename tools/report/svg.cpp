@@ -53,9 +53,9 @@ svg.picture .ours { stroke: var(--ours); stroke-width: 1.8; }
 svg.picture .target { stroke: var(--target); stroke-width: 1.4; stroke-dasharray: 5 4; stroke-linecap: butt; }
 svg.picture rect.bar-ours { fill: var(--ours); }
 svg.picture rect.bar-theirs { fill: var(--theirs); }
-svg.picture .mode { opacity: 0.22; }
-svg.picture .FUSION { fill: #2da44e; }
-svg.picture .LIDAR_AND_CAMERA { fill: #1f9fb4; }
+svg.picture .mode { opacity: 0.28; }
+svg.picture .mode.FUSION { fill: var(--rule); opacity: 0.6; }
+svg.picture .LIDAR_AND_CAMERA { fill: #1fb488; }
 svg.picture .LIDAR_ONLY { fill: #8250df; }
 svg.picture .CAMERA_ONLY { fill: #e08a00; }
 svg.picture .NONE, svg.picture .UNKNOWN { fill: #d1242f; }
@@ -75,9 +75,9 @@ svg.picture .mapped.as_orange, svg.picture .mapped.as_orange_large { stroke: #ff
 svg.picture .mapped.as_unknown { stroke: var(--faint); }
 svg.picture .mapped.wrong { stroke: var(--bad); stroke-width: 2.2; }
 svg.picture .boundary { stroke-width: 1.3; }
-svg.picture .boundary.of_left { stroke: #9cc4ff; }
-svg.picture .boundary.of_right { stroke: #ffe68a; }
-svg.picture .boundary.of_path { stroke: #ffffff; stroke-dasharray: 2 3; stroke-linecap: butt; }
+svg.picture .boundary.of_left { stroke: #5aa2ff; }
+svg.picture .boundary.of_right { stroke: #e6b800; }
+svg.picture .boundary.of_path { stroke: #2ecc8f; stroke-width: 1.8; stroke-dasharray: 3 3; stroke-linecap: butt; }
 svg.picture .moment { fill: #ffffff; stroke: #17202b; stroke-width: 1; }
 svg.picture .hit { stroke: var(--bad); stroke-width: 3.4; }
 svg.picture .off { fill: none; stroke: var(--bad); stroke-width: 2.6; }
@@ -113,6 +113,14 @@ std::string Fixed(double value, int digits) {
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), unsigned_zero,
                                  std::chars_format::fixed, digits);
   return {buffer.data(), end.ptr};
+}
+
+double LegendTextWidth(std::string_view text) {
+  constexpr double kSmall = 6.6;  // mean advance of 11 px letters in the widest font of the style
+  constexpr double kCapital = 8.2;
+  double width = 0.0;
+  for (const char c : text) width += (c >= 'A' && c <= 'Z') ? kCapital : kSmall;
+  return width;
 }
 
 Svg::Svg(double width, double height, std::string_view title)

@@ -13,6 +13,9 @@ std::string Escaped(std::string_view text);
 /// A number with a fixed count of digits behind the point, the same on every machine.
 std::string Fixed(double value, int digits);
 
+/// About how wide the text stands in a legend, in picture units.
+double LegendTextWidth(std::string_view text);
+
 /// The style sheet of all pictures, for light and dark screens and for paper.
 extern const char* const kPictureStyle;
 

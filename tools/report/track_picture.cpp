@@ -6,15 +6,13 @@
 #include "tools/report/pictures.hpp"
 #include "tools/report/trajectory.hpp"
 #include "tools/report/true_track.hpp"
+#include "tools/report/view.hpp"
 
 namespace hairpin {
 namespace {
 
-constexpr double kWidth = 1040.0;
-constexpr double kMaxTrackHeight = 640.0;
-constexpr double kHeader = 64.0;
-constexpr double kFooter = 44.0;
-constexpr double kSide = 28.0;
+constexpr double kWidth = View::kWidth;
+constexpr double kSide = View::kSide;
 constexpr double kStrokeStep = 0.5;  // m of the driven line
 constexpr int kNumMoments = 6;
 constexpr int kNumColours = 16;
@@ -38,46 +36,6 @@ std::string SpeedColour(int level) {
          channel(kSpeedRamp[i].green, kSpeedRamp[i + 1].green) + "," +
          channel(kSpeedRamp[i].blue, kSpeedRamp[i + 1].blue) + ")";
 }
-
-/// From map to the picture: turned to be wider than high, scaled to fit, y downward.
-class View {
- public:
-  explicit View(const Points& points) {
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(-1.0);
-    Eigen::Vector2d high = Eigen::Vector2d::Constant(1.0);
-    if (!points.empty()) low = high = points.front();
-    for (const auto& point : points) {
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-    const Eigen::Vector2d size = (high - low).cwiseMax(1.0);
-    upright_ = size.y() > size.x();
-    middle_ = (low + high) / 2.0;
-    const double width = upright_ ? size.y() : size.x();
-    const double height = upright_ ? size.x() : size.y();
-    scale_ = std::min((kWidth - 2.0 * kSide) / width, kMaxTrackHeight / height);
-    height_ = kHeader + scale_ * height + 2.0 * kSide + kFooter;
-  }
-
-  Eigen::Vector2d operator()(const Eigen::Vector2d& map) const {
-    const Eigen::Vector2d d = scale_ * (map - middle_);
-    const Eigen::Vector2d centre(kWidth / 2.0, kHeader + (height_ - kHeader - kFooter) / 2.0);
-    return centre + (upright_ ? Eigen::Vector2d(d.y(), d.x()) : Eigen::Vector2d(d.x(), -d.y()));
-  }
-  Points operator()(const Points& map) const {
-    Points picture;
-    for (const auto& point : map) picture.push_back((*this)(point));
-    return picture;
-  }
-  double scale() const { return scale_; }
-  double height() const { return height_; }
-
- private:
-  bool upright_;
-  Eigen::Vector2d middle_;
-  double scale_;
-  double height_;
-};
 
 Points Positions(const std::vector<truth_cone_t>& cones) {
   Points points;
@@ -177,14 +135,22 @@ void DrawMoments(const RunLog& log, const View& view, Svg& svg) {
   }
 }
 
+void DrawHit(const Eigen::Vector2d& at, double size, Svg& svg) {
+  svg.Line(at + Eigen::Vector2d(-size, -size), at + Eigen::Vector2d(size, size), "hit");
+  svg.Line(at + Eigen::Vector2d(-size, size), at + Eigen::Vector2d(size, -size), "hit");
+}
+
+void DrawOffCourse(const Eigen::Vector2d& at, double size, Svg& svg) {
+  const Eigen::Vector2d right(size, 0.0);
+  const Eigen::Vector2d down(0.0, size);
+  svg.Area({{at - right, at - down, at + right, at + down}}, "off");
+}
+
 void DrawMishaps(const RunLog& log, const View& view, Svg& svg) {
   for (size_t i = 1; i < log.truth.size(); ++i) {
     const Eigen::Vector2d at = view({log.truth[i].x_m, log.truth[i].y_m});
-    if (log.truth[i].cones_hit > log.truth[i - 1].cones_hit) {
-      svg.Line(at + Eigen::Vector2d(-8.0, -8.0), at + Eigen::Vector2d(8.0, 8.0), "hit");
-      svg.Line(at + Eigen::Vector2d(-8.0, 8.0), at + Eigen::Vector2d(8.0, -8.0), "hit");
-    }
-    if (log.truth[i].off_course > log.truth[i - 1].off_course) svg.Circle(at, 13.0, "off");
+    if (log.truth[i].cones_hit > log.truth[i - 1].cones_hit) DrawHit(at, 8.0, svg);
+    if (log.truth[i].off_course > log.truth[i - 1].off_course) DrawOffCourse(at, 14.0, svg);
   }
 }
 
@@ -210,25 +176,22 @@ void DrawScaleBar(const View& view, double y, Svg& svg) {
 
 void DrawLegend(double y, Svg& svg) {
   double x = kSide;
-  const auto entry = [&](const char* text, double words, auto&& symbol) {
+  const auto entry = [&](const char* text, auto&& symbol) {
     symbol(Eigen::Vector2d(x + 6.0, y - 4.0));
     svg.Text({x + 18.0, y}, text, "small");
-    x += 18.0 + words;
+    x += 32.0 + LegendTextWidth(text);
   };
-  entry("cone", 38.0, [&](const auto& at) { svg.Circle(at, 3.2, "rim blue"); });
-  entry("mapped", 54.0, [&](const auto& at) { svg.Circle(at, 5.4, "mapped as_blue"); });
-  entry("mapped, none there", 118.0,
+  entry("cone", [&](const auto& at) { svg.Circle(at, 3.2, "rim blue"); });
+  entry("mapped", [&](const auto& at) { svg.Circle(at, 5.4, "mapped as_blue"); });
+  entry("mapped, none there",
         [&](const auto& at) { svg.Circle(at, 6.5, "mapped as_unknown wrong"); });
-  entry("clutter", 50.0, [&](const auto& at) {
+  entry("clutter", [&](const auto& at) {
     svg.Rectangle(at - Eigen::Vector2d(2.5, 2.5), 5.0, 5.0, "clutter");
   });
-  entry("estimated boundaries and path from here", 232.0,
+  entry("boundaries and path as seen from here",
         [&](const auto& at) { svg.Circle(at, 4.0, "moment"); });
-  entry("cone hit", 58.0, [&](const auto& at) {
-    svg.Line(at + Eigen::Vector2d(-5.0, -5.0), at + Eigen::Vector2d(5.0, 5.0), "hit");
-    svg.Line(at + Eigen::Vector2d(-5.0, 5.0), at + Eigen::Vector2d(5.0, -5.0), "hit");
-  });
-  entry("off course", 70.0, [&](const auto& at) { svg.Circle(at, 6.0, "off"); });
+  entry("cone hit", [&](const auto& at) { DrawHit(at, 5.0, svg); });
+  entry("off course", [&](const auto& at) { DrawOffCourse(at, 7.0, svg); });
 }
 
 }  // namespace

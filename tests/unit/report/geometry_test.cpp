@@ -4,7 +4,9 @@
 
 #include "tests/support/synthetic_run.hpp"
 #include "tools/report/map_comparison.hpp"
+#include "tools/report/trajectory.hpp"
 #include "tools/report/true_track.hpp"
+#include "tools/report/view.hpp"
 
 namespace hairpin {
 namespace {
@@ -130,6 +132,44 @@ TEST(TrueCones, LeavesClutterOutAndTakesEachConeOnce) {
   EXPECT_EQ(TrueCones(track).size(), 11u + 11u + 1u);
   ASSERT_EQ(Clutter(track).size(), 1u);
   EXPECT_EQ(Clutter(track)[0], Eigen::Vector2d(7.0, 7.0));
+}
+
+TEST(TrueTrajectory, InterpolatesAcrossTheTurnOfTheAngleAndRefusesGaps) {
+  RunLog log;
+  for (const auto& [utime, x, yaw] :
+       {std::tuple{0, 0.0, 3.1}, {100'000, 1.0, -3.1}, {900'000, 2.0, 0.0}}) {
+    truth_t truth{};
+    truth.utime = utime;
+    truth.x_m = x;
+    truth.yaw_rad = yaw;
+    log.truth.push_back(truth);
+  }
+  const TrueTrajectory trajectory(log);
+  const auto state = trajectory.At(50'000);
+  ASSERT_TRUE(state);
+  EXPECT_NEAR(state->T_map_base.x, 0.5, 1e-12);
+  EXPECT_NEAR(std::abs(state->T_map_base.yaw), std::numbers::pi, 1e-9);
+  EXPECT_TRUE(trajectory.At(900'000));
+  EXPECT_FALSE(trajectory.At(500'000));
+  EXPECT_FALSE(trajectory.At(-1));
+  EXPECT_FALSE(trajectory.At(900'001));
+}
+
+TEST(View, KeepsHandednessAndShapeAndIsWiderThanHigh) {
+  for (const Points& points :
+       {Points{{0.0, 0.0}, {80.0, 30.0}}, Points{{0.0, 0.0}, {30.0, 80.0}}}) {
+    const View view(points);
+    const Eigen::Vector2d origin = view({10.0, 10.0});
+    const Eigen::Vector2d x = view({11.0, 10.0}) - origin;
+    const Eigen::Vector2d y = view({10.0, 11.0}) - origin;
+    EXPECT_NEAR(x.x() * y.y() - x.y() * y.x(), -view.scale() * view.scale(),
+                1e-9);  // y is down in a picture
+    EXPECT_NEAR(x.dot(y), 0.0, 1e-9);
+    const Eigen::Vector2d size = (view(points[1]) - view(points[0])).cwiseAbs();
+    EXPECT_GT(size.x(), size.y());
+    EXPECT_LT(size.x(), View::kWidth);
+    EXPECT_LT(size.y(), view.height());
+  }
 }
 
 }  // namespace
