@@ -50,6 +50,21 @@ bool ConsistencyVote::IsAlone(size_t voter, int64_t now) const {
   return count >= 2;
 }
 
+std::optional<double> ConsistencyVote::FilterErrorAt(int64_t now) const {
+  double error = 0.0;
+  int against = 0;
+  for (const Ballot& ballot : ballots_) {
+    if (!IsPresent(ballot, now)) continue;
+    for (const Ballot& other : ballots_) {
+      if (IsPresent(other, now) && !Agree(ballot, other)) return std::nullopt;
+    }
+    if (std::abs(ballot.mean) <= ballot.tolerance) continue;
+    error = std::max(error, std::abs(ballot.mean));
+    ++against;
+  }
+  return against >= 2 ? std::optional(error) : std::nullopt;
+}
+
 bool ConsistencyVote::IsPresent(const Ballot& ballot, int64_t now) {
   return ballot.present && SecondsBetween(ballot.utime, now) <= ballot.lifetime;
 }

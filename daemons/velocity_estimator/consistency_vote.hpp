@@ -13,7 +13,7 @@ namespace hairpin {
 /// error cancels in the differences.
 class ConsistencyVote {
  public:
-  static constexpr size_t kMaxVoters = 4;
+  static constexpr size_t kMaxVoters = 3;
 
   /// A residual counts for at most this many tolerances, so that a spike does not decide a vote.
   static constexpr double kMostTolerances = 3.0;
@@ -32,6 +32,10 @@ class ConsistencyVote {
     double error;  // largest averaged residual of the majority: what the filter is off by
   };
   std::optional<Minority> MinorityAt(int64_t now) const;
+
+  /// Largest averaged residual where all voters agree with one another, and at least two of them
+  /// contradict the filter.
+  std::optional<double> FilterErrorAt(int64_t now) const;
 
  private:
   struct Ballot {

@@ -18,21 +18,23 @@ double MiddleOf(std::array<double, 4> values) {
 }  // namespace
 
 SensorVotes::SensorVotes(const VelocityEstimatorParams& params)
-    : params_(params), speed_(params.vote.time_constant), yaw_rate_(params.vote.time_constant) {}
+    : params_(params),
+      forward_(params.vote.time_constant),
+      lateral_(params.vote.time_constant),
+      yaw_rate_(params.vote.time_constant) {}
 
-void SensorVotes::Cast(const StateVector& state, const Readings& readings,
+void SensorVotes::Cast(int64_t utime, const StateVector& state, const Readings& readings,
                        const Wheels& slip_sigmas) {
+  turned_ += state[kYawRate] * SecondsBetween(utime_, utime);
+  utime_ = utime;
   if (readings.imu) CastImu(state, *readings.imu);
-  if (readings.ground_speed) {
-    const GroundSpeedReading& reading = *readings.ground_speed;
-    const double residual =
-        reading.velocity.x() - VelocityAt(state, params_.car.ground_speed_position).x();
-    const double tolerance =
-        params_.vote.speed_offset + params_.vote.speed_scale * std::abs(reading.velocity.x());
-    speed_.Cast(kGroundSpeed, reading.utime, residual, tolerance, params_.deadlines.ground_speed);
-  }
+  if (readings.ground_speed) CastGroundSpeed(state, *readings.ground_speed);
   if (readings.motors) CastMotors(state, readings, slip_sigmas);
   if (readings.gnss) CastGnss(state, *readings.gnss);
+}
+
+double SensorVotes::SpeedTolerance(double speed) const {
+  return params_.vote.speed_offset + params_.vote.speed_scale * speed;
 }
 
 void SensorVotes::CastImu(const StateVector& state, const ImuReading& reading) {
@@ -61,25 +63,33 @@ void SensorVotes::CastMotors(const StateVector& state, const Readings& readings,
   // Without the steering angle, only the rear wheels tell.
   const double residual =
       readings.steering ? MiddleOf(residuals) : 0.5 * (residuals[2] + residuals[3]);
-  speed_.Cast(kWheels, reading.utime, residual, params_.vote.speed_offset + slip_speed,
-              params_.deadlines.motors);
-  const double width = params_.car.track_width;
-  yaw_rate_.Cast(kRearWheels, reading.utime, (residuals[3] - residuals[2]) / width,
-                 params_.vote.gyro_offset + slip_speed / width, params_.deadlines.motors);
+  forward_.Cast(kWheels, reading.utime, residual, params_.vote.speed_offset + slip_speed,
+                params_.deadlines.motors);
+}
+
+void SensorVotes::CastGroundSpeed(const StateVector& state, const GroundSpeedReading& reading) {
+  const Eigen::Vector2d residual =
+      reading.velocity - VelocityAt(state, params_.car.ground_speed_position);
+  const double tolerance = SpeedTolerance(reading.velocity.norm());
+  forward_.Cast(kGroundSpeed, reading.utime, residual.x(), tolerance,
+                params_.deadlines.ground_speed);
+  lateral_.Cast(kGroundSpeed, reading.utime, residual.y(), tolerance,
+                params_.deadlines.ground_speed);
 }
 
 void SensorVotes::CastGnss(const StateVector& state, const GnssReading& reading) {
   const Eigen::Vector2d velocity = VelocityInBase(reading);
-  const double residual = velocity.x() - VelocityAt(state, params_.car.gnss_position).x();
-  const double tolerance =
-      params_.vote.speed_offset + params_.vote.speed_scale * std::abs(velocity.x());
-  speed_.Cast(kGnss, reading.utime, residual, tolerance, params_.deadlines.gnss);
+  const Eigen::Vector2d residual = velocity - VelocityAt(state, params_.car.gnss_position);
+  const double tolerance = SpeedTolerance(velocity.norm());
+  forward_.Cast(kGnss, reading.utime, residual.x(), tolerance, params_.deadlines.gnss);
+  lateral_.Cast(kGnss, reading.utime, residual.y(), tolerance, params_.deadlines.gnss);
   const double dt = last_gnss_ ? SecondsBetween(last_gnss_->utime, reading.utime) : 0.0;
   if (dt > 0.0 && dt <= params_.deadlines.gnss) {
-    const double rate = WrapAngle(reading.heading - last_gnss_->heading) / dt;
-    yaw_rate_.Cast(kHeading, reading.utime, rate - state[kYawRate], params_.vote.heading_rate,
+    const double residual_rate = WrapAngle(reading.heading - last_gnss_->heading - turned_) / dt;
+    yaw_rate_.Cast(kHeading, reading.utime, residual_rate, params_.vote.heading_rate,
                    params_.deadlines.gnss);
   }
+  turned_ = 0.0;
   last_gnss_ = reading;
 }
 

@@ -17,27 +17,30 @@ class SensorVotes {
  public:
   explicit SensorVotes(const VelocityEstimatorParams& params);
 
-  /// Adds the readings of one step, seen against the state before any of them is fused.
-  void Cast(const StateVector& state, const Readings& readings, const Wheels& slip_sigmas);
-  std::optional<ConsistencyVote::Minority> SpeedMinorityAt(int64_t now) const {
-    return speed_.MinorityAt(now);
-  }
-  std::optional<ConsistencyVote::Minority> YawRateMinorityAt(int64_t now) const {
-    return yaw_rate_.MinorityAt(now);
-  }
+  /// Adds the readings of one step, seen against the state of `utime` before any of them is fused.
+  void Cast(int64_t utime, const StateVector& state, const Readings& readings,
+            const Wheels& slip_sigmas);
+  const ConsistencyVote& forward() const { return forward_; }
+  const ConsistencyVote& lateral() const { return lateral_; }
+  const ConsistencyVote& yaw_rate() const { return yaw_rate_; }
 
   enum SpeedVoter : size_t { kGroundSpeed, kWheels, kGnss, kNumSpeedVoters };
-  enum YawVoter : size_t { kGyro, kLateralAcceleration, kRearWheels, kHeading, kNumYawVoters };
+  enum YawVoter : size_t { kGyro, kLateralAcceleration, kHeading, kNumYawVoters };
 
  private:
+  double SpeedTolerance(double speed) const;
   void CastMotors(const StateVector& state, const Readings& readings, const Wheels& slip_sigmas);
+  void CastGroundSpeed(const StateVector& state, const GroundSpeedReading& reading);
   void CastGnss(const StateVector& state, const GnssReading& reading);
   void CastImu(const StateVector& state, const ImuReading& reading);
 
   VelocityEstimatorParams params_;
-  ConsistencyVote speed_;
+  ConsistencyVote forward_;
+  ConsistencyVote lateral_;
   ConsistencyVote yaw_rate_;
   std::optional<GnssReading> last_gnss_;
+  double turned_ = 0.0;  // rad since the last GNSS reading, by the filter
+  int64_t utime_ = 0;
 };
 
 }  // namespace hairpin

@@ -16,7 +16,7 @@ void Require(bool holds, const char* name, double value, const char* relation, d
 }
 
 void RequirePositive(const char* name, double value) {
-  Require(std::isfinite(value) && value > 0.0, name, value, "> ", 0.0);
+  Require(std::isfinite(value) && value > 0.0, name, value, ">", 0.0);
 }
 
 void ValidateCar(const Car& car) {

@@ -24,6 +24,10 @@ StateMatrix PriorCovariance(const SlipParams& slip) {
 
 Eigen::Matrix<double, 1, 1> Scalar(double value) { return Eigen::Matrix<double, 1, 1>(value); }
 
+void TakeBack(std::span<SensorMonitor> sensors) {
+  for (SensorMonitor& sensor : sensors) sensor.TakeBack();
+}
+
 }  // namespace
 
 VelocityFilter::VelocityFilter(const VelocityEstimatorParams& params)
@@ -67,7 +71,7 @@ void VelocityFilter::Fuse(const Readings& readings) {
   NoteMotion(readings);
   if (readings.motors) torque_ = readings.motors->torque;
   const Wheels sigmas = slip_model_.Sigmas(torque_, mean()[kAcceleration]);
-  if (IsCertain()) votes_.Cast(mean(), readings, sigmas);
+  if (IsCertain()) votes_.Cast(utime_, mean(), readings, sigmas);
   FollowMajorities();
   if (readings.imu) FuseImu(*readings.imu);
   if (readings.ground_speed) FuseGroundSpeed(*readings.ground_speed);
@@ -83,14 +87,22 @@ void VelocityFilter::FollowMajorities() {
   StateVector errors = StateVector::Zero();
   const std::array<std::span<SensorMonitor>, SensorVotes::kNumSpeedVoters> speed{
       std::span(&ground_speed_, 1), std::span(wheels_), std::span(&gnss_, 1)};
-  const auto slow = votes_.SpeedMinorityAt(utime_);
-  if (slow && Overrule(speed, slow->voter)) errors.segment<2>(kVelocity).setConstant(slow->error);
-  // Rear wheels and heading only vote on yaw rate; the filter does not use them so.
+  const auto forward = votes_.forward().MinorityAt(utime_);
+  if (forward && Overrule(speed, forward->voter)) errors.head<2>().setConstant(forward->error);
+  // The heading only votes: the filter does not use its change.
   const std::array<std::span<SensorMonitor>, SensorVotes::kNumYawVoters> yaw_rate{
-      std::span(&gyro_, 1), std::span(&accelerometer_, 1), std::span<SensorMonitor>(),
-      std::span<SensorMonitor>()};
-  const auto turned = votes_.YawRateMinorityAt(utime_);
+      std::span(&gyro_, 1), std::span(&accelerometer_, 1), std::span<SensorMonitor>()};
+  const auto turned = votes_.yaw_rate().MinorityAt(utime_);
   if (turned && Overrule(yaw_rate, turned->voter)) errors[kYawRate] = turned->error;
+  // Where all sensors of speed contradict the filter, what carries it between them is wrong: the
+  // accelerometer.
+  for (const ConsistencyVote* vote : {&votes_.forward(), &votes_.lateral()}) {
+    const std::optional<double> error = vote->FilterErrorAt(utime_);
+    if (!error || accelerometer_.is_out()) continue;
+    accelerometer_.TakeOut(utime_);
+    for (const auto& sensor : speed) TakeBack(sensor);
+    errors.head<2>().setConstant(*error);
+  }
   filter_.Inflate(errors.cwiseAbs2().asDiagonal());
 }
 
@@ -100,7 +112,7 @@ bool VelocityFilter::Overrule(std::span<const std::span<SensorMonitor>> voters, 
   for (SensorMonitor& sensor : voters[minority]) sensor.TakeOut(utime_);
   for (size_t voter = 0; voter < voters.size(); ++voter) {
     if (!is_news || voter == minority) continue;
-    for (SensorMonitor& sensor : voters[voter]) sensor.TakeBack();
+    TakeBack(voters[voter]);
   }
   return is_news;
 }
