@@ -24,7 +24,6 @@ Actuators::Actuators(const ActuatorParams& params, const Car& car) : params_(par
   RequireWithin("state_timeout", params.state_timeout_s, 0.05, 1.0);
   RequireWithin("deadman_brake", params.deadman_brake, 0.0, 1.0);
   RequireWithin("parking_brake", params.parking_brake, 0.0, 1.0);
-  RequirePositive("standstill", params.standstill_mps);
 }
 
 std::string Actuators::OnCommand(const drive_command_t& command, int64_t now) {
@@ -79,11 +78,10 @@ void Actuators::Watch(int64_t now) {
   }
 }
 
-VehicleInput Actuators::Act(int64_t now, double speed, double steering_angle) {
+VehicleInput Actuators::Act(int64_t now, double steering_angle) {
   Watch(now);
   // The brake that a finished car is left with is the same spring; it opens no circuit.
-  const bool stands = std::abs(speed) < params_.standstill_mps;
-  if (state_.mission_finished && stands) ebs_activated_ = true;
+  if (state_.state == as_state_t::STATE_FINISHED) ebs_activated_ = true;
   VehicleInput input;
   input.steering_angle = steering_angle;
   if (ebs_activated_) {

@@ -17,7 +17,6 @@ struct ActuatorParams {
   double state_timeout_s = 0.0;    // AS_STATE older than this while driving: emergency brake
   double deadman_brake = 0.0;      // 0 to 1, where commands are missing
   double parking_brake = 0.0;      // 0 to 1, where the car is to stand
-  double standstill_mps = 0.0;
 };
 
 /// The CAN side of the actuators: takes commands while AS_STATE allows, brakes when they cease, and
@@ -38,9 +37,8 @@ class Actuators {
   /// Remote emergency stop: opens the circuit, for good.
   void StopByRes();
 
-  /// What the actuators do at `now`, for a car that moves at `speed` [m/s] with its wheels at
-  /// `steering_angle` [rad].
-  VehicleInput Act(int64_t now, double speed, double steering_angle);
+  /// What the actuators do at `now`, for wheels that stand at `steering_angle` [rad].
+  VehicleInput Act(int64_t now, double steering_angle);
 
   int32_t state() const { return state_.state; }
   bool mission_finished() const { return state_.mission_finished; }

@@ -103,8 +103,7 @@ void Simulator::Step() {
 
 void Simulator::Advance() {
   const VehicleState& state = vehicle_.state();
-  const double speed = std::hypot(state.velocity.vx, state.velocity.vy);
-  const VehicleInput input = actuators_.Act(utime_, speed, state.steering_angle);
+  const VehicleInput input = actuators_.Act(utime_, state.steering_angle);
   vehicle_.Advance(input, static_cast<int>(std::lround(kTick / Vehicle::kStep)));
 }
 

@@ -50,7 +50,6 @@ ActuatorParams LoadActuators(const Config& config) {
   params.state_timeout_s = config.Number("state_timeout_s", {0.05, 1.0});
   params.deadman_brake = config.Number("deadman_brake", kShare);
   params.parking_brake = config.Number("parking_brake", kShare);
-  params.standstill_mps = config.Number("standstill_mps", {0.001, 1.0});
   return params;
 }
 

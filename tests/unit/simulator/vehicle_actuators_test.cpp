@@ -35,7 +35,7 @@ VehicleInput ActAfter(Actuators& actuators, int64_t milliseconds) {
   EXPECT_EQ(actuators.OnCommand(Command(kStart), kStart), "");
   const int64_t now = kStart + milliseconds * kMillisecond;
   EXPECT_EQ(actuators.OnState(State(now, as_state_t::STATE_DRIVING), now), "");
-  return actuators.Act(now, kMoving, 0.1);
+  return actuators.Act(now, 0.1);
 }
 
 TEST(Actuators, ObeyAFreshCommand) {
@@ -76,7 +76,7 @@ TEST(Actuators, DriveOnWhenCommandsComeBackBefore200Milliseconds) {
   ActAfter(actuators, 199);
   const int64_t now = kStart + 199 * kMillisecond;
   EXPECT_EQ(actuators.OnCommand(Command(now), now), "");
-  EXPECT_EQ(actuators.Act(now, kMoving, 0.1).wheel_torque[0], 50.0);
+  EXPECT_EQ(actuators.Act(now, 0.1).wheel_torque[0], 50.0);
 }
 
 TEST(Actuators, BrakeForGoodAfter200Milliseconds) {
@@ -86,27 +86,27 @@ TEST(Actuators, BrakeForGoodAfter200Milliseconds) {
   EXPECT_FALSE(actuators.shutdown_circuit_closed());
   const int64_t later = kStart + 300 * kMillisecond;
   EXPECT_EQ(actuators.OnCommand(Command(later), later), "");
-  EXPECT_EQ(actuators.Act(later, kMoving, 0.1).brake, 1.0);
-  EXPECT_EQ(actuators.Act(later, kMoving, 0.1).wheel_torque[0], 0.0);
+  EXPECT_EQ(actuators.Act(later, 0.1).brake, 1.0);
+  EXPECT_EQ(actuators.Act(later, 0.1).wheel_torque[0], 0.0);
 }
 
 TEST(Actuators, CountFromTheStateWhereNoCommandHasComeYet) {
   Actuators actuators = MakeActuators();
   actuators.OnState(State(kStart, as_state_t::STATE_DRIVING), kStart);
-  EXPECT_EQ(actuators.Act(kStart + 40 * kMillisecond, 0.0, 0.0).brake, 0.0);
-  EXPECT_GT(actuators.Act(kStart + 110 * kMillisecond, 0.0, 0.0).brake, 0.0);
+  EXPECT_EQ(actuators.Act(kStart + 40 * kMillisecond, 0.0).brake, 0.0);
+  EXPECT_GT(actuators.Act(kStart + 110 * kMillisecond, 0.0).brake, 0.0);
   EXPECT_FALSE(actuators.ebs_activated());
-  actuators.Act(kStart + 210 * kMillisecond, 0.0, 0.0);
+  actuators.Act(kStart + 210 * kMillisecond, 0.0);
   EXPECT_TRUE(actuators.ebs_activated());
 }
 
 TEST(Actuators, ParkUnlessDriving) {
   for (const int32_t state : std::initializer_list<int32_t>{
-           as_state_t::STATE_OFF, as_state_t::STATE_READY, as_state_t::STATE_FINISHED}) {
+           as_state_t::STATE_OFF, as_state_t::STATE_READY}) {
     Actuators actuators = MakeActuators();
     actuators.OnState(State(kStart, state), kStart);
     actuators.OnCommand(Command(kStart), kStart);
-    const VehicleInput input = actuators.Act(kStart + kMillisecond, 0.0, 0.05);
+    const VehicleInput input = actuators.Act(kStart + kMillisecond, 0.05);
     EXPECT_EQ(input.wheel_torque[0], 0.0);
     EXPECT_GT(input.brake, 0.0);
     EXPECT_EQ(input.steering_angle, 0.05);
@@ -114,14 +114,16 @@ TEST(Actuators, ParkUnlessDriving) {
   }
 }
 
-TEST(Actuators, SetTheBrakeOfACarThatStandsAfterItsMission) {
+TEST(Actuators, SetTheEmergencyBrakeOnlyOnceTheMissionIsOver) {
   Actuators actuators = MakeActuators();
   as_state_t state = State(kStart, as_state_t::STATE_DRIVING);
   state.mission_finished = 1;
   actuators.OnState(state, kStart);
   actuators.OnCommand(Command(kStart), kStart);
-  EXPECT_EQ(actuators.Act(kStart, kMoving, 0.0).brake, 0.0);
-  EXPECT_EQ(actuators.Act(kStart + kMillisecond, 0.0, 0.0).brake, 1.0);
+  EXPECT_EQ(actuators.Act(kStart, 0.0).brake, 0.0);
+  EXPECT_FALSE(actuators.ebs_activated());
+  actuators.OnState(State(kStart + kMillisecond, as_state_t::STATE_FINISHED), kStart + kMillisecond);
+  EXPECT_EQ(actuators.Act(kStart + kMillisecond, 0.0).brake, 1.0);
   EXPECT_TRUE(actuators.ebs_activated());
   EXPECT_TRUE(actuators.shutdown_circuit_closed());
 }
@@ -129,12 +131,12 @@ TEST(Actuators, SetTheBrakeOfACarThatStandsAfterItsMission) {
 TEST(Actuators, BrakeInAnEmergencyAndOnTheRemoteStop) {
   Actuators emergency = MakeActuators();
   emergency.OnState(State(kStart, as_state_t::STATE_EMERGENCY), kStart);
-  EXPECT_EQ(emergency.Act(kStart, kMoving, 0.0).brake, 1.0);
+  EXPECT_EQ(emergency.Act(kStart, 0.0).brake, 1.0);
   Actuators stopped = MakeActuators();
   stopped.OnState(State(kStart, as_state_t::STATE_DRIVING), kStart);
   stopped.OnCommand(Command(kStart), kStart);
   stopped.StopByRes();
-  EXPECT_EQ(stopped.Act(kStart, kMoving, 0.0).brake, 1.0);
+  EXPECT_EQ(stopped.Act(kStart, 0.0).brake, 1.0);
   EXPECT_TRUE(stopped.res_stop());
 }
 
@@ -144,7 +146,7 @@ TEST(Actuators, BrakeForGoodWhenTheStateCeasesToCome) {
   for (int64_t ms = 0; ms <= 210; ms += 10) {
     const int64_t now = kStart + ms * kMillisecond;
     actuators.OnCommand(Command(now), now);
-    actuators.Act(now, kMoving, 0.0);
+    actuators.Act(now, 0.0);
     EXPECT_EQ(actuators.ebs_activated(), ms > 200) << ms;
   }
 }
@@ -158,7 +160,7 @@ TEST(Actuators, LimitWhatIsCommanded) {
   command.wheel_torque_nm[1] = -1e9;
   command.brake = 7.0;
   actuators.OnCommand(command, kStart);
-  const VehicleInput input = actuators.Act(kStart, kMoving, 0.0);
+  const VehicleInput input = actuators.Act(kStart, 0.0);
   EXPECT_EQ(input.steering_angle, -car.max_steering_angle);
   EXPECT_EQ(input.wheel_torque[1], -car.max_wheel_torque);
   EXPECT_EQ(input.brake, 1.0);

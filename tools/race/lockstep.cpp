@@ -1,0 +1,82 @@
+#include "tools/race/lockstep.hpp"
+
+#include <algorithm>
+
+namespace hairpin {
+namespace {
+
+constexpr int64_t kPatience = 250'000;     // us of wall time
+constexpr int64_t kStatusPeriod = 20'000;  // us of data time between two PIPELINE_STATUS
+constexpr int kWaitMs = 10;
+
+}  // namespace
+
+Lockstep::Lockstep(Transport& transport) : transport_(transport), bus_(transport, "lockstep", 1) {
+  Listen(channels::kVelocity);
+  Listen(channels::kDriveCommand);
+  Listen(channels::kAsState);
+  Listen(channels::kLocalMap);
+  Listen(channels::kTrack);
+  answers_[channels::kPipelineStatus.name];
+  bus_.Subscribe(channels::kPipelineStatus, [this](const pipeline_status_t& message) {
+    mode_ = static_cast<MapMode>(message.map_mode);
+    Heard(channels::kPipelineStatus.name, message.utime);
+  });
+  bus_.Subscribe(channels::kVehicle,
+                 [this](const vehicle_t& message) { vehicle_utime_ = message.utime; });
+  bus_.Subscribe(channels::kConesFusion,
+                 [this](const cones_t& message) { observed_[Pipeline::kFusion] = message.utime; });
+  bus_.Subscribe(channels::kConesLidar,
+                 [this](const cones_t& message) { observed_[Pipeline::kLidar] = message.utime; });
+  bus_.Subscribe(channels::kConesCamera,
+                 [this](const cones_t& message) { observed_[Pipeline::kCamera] = message.utime; });
+}
+
+template <class M>
+void Lockstep::Listen(const Channel<M>& channel) {
+  answers_[channel.name];
+  bus_.Subscribe(channel,
+                 [this, name = channel.name](const M& message) { Heard(name, message.utime); });
+}
+
+void Lockstep::Heard(const std::string& channel, int64_t utime) {
+  Answer& answer = answers_.at(channel);
+  answer.newest = std::max(answer.newest, utime);
+  answer.silent = false;
+}
+
+int64_t Lockstep::Wanted(const std::string& channel, int64_t utime) const {
+  if (channel == channels::kPipelineStatus.name) return utime - kStatusPeriod;
+  if (channel == channels::kAsState.name) return vehicle_utime_;
+  if (channel != channels::kLocalMap.name && channel != channels::kTrack.name) return utime;
+  int64_t wanted = 0;
+  for (const auto& [pipeline, observed] : observed_) {
+    if (Uses(mode_, pipeline)) wanted = std::max(wanted, observed);
+  }
+  return wanted;
+}
+
+bool Lockstep::Answered(int64_t utime) const {
+  return std::all_of(answers_.begin(), answers_.end(), [&](const auto& entry) {
+    return entry.second.silent || entry.second.newest >= Wanted(entry.first, utime);
+  });
+}
+
+void Lockstep::Await(int64_t utime) {
+  transport_.Drain();
+  const int64_t start = clock_.NowMicros();
+  while (!Answered(utime)) {
+    transport_.Handle(kWaitMs);
+    if (clock_.NowMicros() - start < kPatience) continue;
+    ++missed_;
+    for (auto& [channel, answer] : answers_)
+      answer.silent = answer.silent || answer.newest < Wanted(channel, utime);
+  }
+}
+
+bool Lockstep::AnyoneSilent() const {
+  return std::any_of(answers_.begin(), answers_.end(),
+                     [](const auto& entry) { return entry.second.silent; });
+}
+
+}  // namespace hairpin

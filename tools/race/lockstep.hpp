@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/bus.hpp"
+#include "common/clock.hpp"
+#include "common/map_mode.hpp"
+
+namespace hairpin {
+
+/// Makes simulated time wait for the stack's answers, so that the outcome of a lap does not depend
+/// on how fast the machine is. After each tick it waits for VELOCITY, DRIVE_COMMAND, AS_STATE and
+/// PIPELINE_STATUS of that tick, and for LOCAL_MAP and TRACK of the newest observations that the
+/// map's mode uses.
+///
+/// A channel that has not answered within 250 ms of wall time counts as silent and is not waited
+/// for until it speaks again: a dead daemon costs one such wait, not one a tick.
+class Lockstep {
+ public:
+  explicit Lockstep(Transport& transport);
+
+  /// Handles messages until the stack has answered the tick of time `utime`.
+  void Await(int64_t utime);
+  /// True if someone is not answering; the run then goes no faster than real time.
+  bool AnyoneSilent() const;
+  /// Waits missed so far.
+  int missed() const { return missed_; }
+
+ private:
+  struct Answer {
+    int64_t newest = 0;
+    bool silent = true;  // until first heard
+  };
+  bool Answered(int64_t utime) const;
+  int64_t Wanted(const std::string& channel, int64_t utime) const;
+  void Heard(const std::string& channel, int64_t utime);
+  template <class M>
+  void Listen(const Channel<M>& channel);
+
+  Transport& transport_;
+  MonotonicClock clock_;
+  Bus bus_;
+  std::map<std::string, Answer> answers_;
+  std::map<Pipeline, int64_t> observed_;
+  int64_t vehicle_utime_ = 0;
+  MapMode mode_ = MapMode::kUnknown;
+  int missed_ = 0;
+};
+
+}  // namespace hairpin

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tools/race/fault.hpp"
+#include "tools/race/stack.hpp"
+#include "tools/simulator/simulator.hpp"
+
+namespace hairpin {
+
+struct RaceOptions {
+  Track track;
+  uint64_t seed = 1;
+  bool in_process = false;
+  double speed = 1.0;  // at most this many times real time; 0: as fast as it goes
+  std::vector<Fault> faults;
+  StackOptions stack;
+  std::string log_file;
+};
+
+struct RaceOutcome {
+  RaceResult result;
+  std::map<std::string, std::vector<double>> latencies_ms;
+  double real_time_factor = 0.0;  // simulated over wall time
+  int answers_missed = 0;         // waits of the lock-step that ended without an answer
+  bool interrupted = false;
+};
+
+/// The sources that a fault may name: the simulator's, and the daemons.
+std::vector<std::string> FaultSources();
+
+/// Runs simulator and stack until the race is over or `stop` becomes non-zero. Throws ConfigError,
+/// or std::runtime_error where a daemon cannot be kept alive.
+RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop);
+
+}  // namespace hairpin

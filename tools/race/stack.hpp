@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/clock.hpp"
+#include "common/daemon.hpp"
+
+namespace hairpin {
+
+/// The daemons that make the car drive, in the order of the data's flow.
+const std::vector<std::string>& StackDaemons();
+
+struct StackOptions {
+  std::string config_dir;
+  std::string program_dir;  // where the daemons' executables lie
+  std::string log_dir;      // for what they write to stderr
+  /// "daemon.key=value" in place of what the daemon's config file says.
+  std::vector<std::string> overrides;
+};
+
+/// The daemons as a whole, whichever way they run.
+class Stack {
+ public:
+  virtual ~Stack() = default;
+  /// Kills (off) or starts (on) one daemon.
+  virtual void SetDaemon(const std::string& name, bool on) = 0;
+  /// Lets the daemons do what is to be done at simulated time `utime`; restarts what has died
+  /// unasked.
+  virtual void Tend(int64_t utime) = 0;
+};
+
+/// All nodes in this process, on one shared transport. What a node throws comes out of the
+/// transport's Handle().
+class InProcessStack final : public Stack {
+ public:
+  /// Throws ConfigError, its lines prefixed with the daemon's name.
+  InProcessStack(const StackOptions& options, Transport& transport);
+  void SetDaemon(const std::string& name, bool on) override;
+  void Tend(int64_t utime) override;
+
+ private:
+  struct Member {
+    std::unique_ptr<Bus> bus;
+    std::unique_ptr<Heartbeat> heartbeat;
+    std::unique_ptr<HostedNode> node;
+  };
+  StackOptions options_;
+  Transport& transport_;
+  ManualClock clock_;
+  std::map<std::string, NodeFactory> factories_;
+  std::map<std::string, Member> members_;
+  int64_t starts_ = 0;
+};
+
+/// Every daemon a process of its own, as on the car. A daemon that dies unasked is started again
+/// after 100 ms, five times in ten seconds at most, as its systemd unit would. All are ended with
+/// this object.
+class ProcessStack final : public Stack {
+ public:
+  ProcessStack(const StackOptions& options, const std::string& lcm_url);
+  ~ProcessStack() override;
+  void SetDaemon(const std::string& name, bool on) override;
+  /// Throws std::runtime_error, with the last lines that the daemon wrote, where one cannot be kept
+  /// alive.
+  void Tend(int64_t utime) override;
+
+ private:
+  struct Process {
+    int pid = 0;  // 0: not running
+    bool wanted = true;
+    int64_t restart_at = 0;         // wall time, us
+    std::vector<int64_t> restarts;  // wall times of the last ten seconds
+  };
+  void Start(const std::string& name, Process& process);
+  void Reap(const std::string& name, Process& process);
+  std::string LogFile(const std::string& name) const;
+  [[noreturn]] void GiveUp(const std::string& name, const std::string& why) const;
+
+  StackOptions options_;
+  std::string lcm_url_;
+  MonotonicClock clock_;
+  std::map<std::string, Process> processes_;
+};
+
+}  // namespace hairpin
