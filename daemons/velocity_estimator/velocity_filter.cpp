@@ -103,7 +103,7 @@ void VelocityFilter::FollowMajorities() {
     for (const auto& sensor : speed) TakeBack(sensor);
     errors.head<2>().setConstant(*error);
   }
-  filter_.Inflate(errors.cwiseAbs2().asDiagonal());
+  if (!errors.isZero()) filter_.Inflate(errors.cwiseAbs2().asDiagonal());
 }
 
 bool VelocityFilter::Overrule(std::span<const std::span<SensorMonitor>> voters, size_t minority) {
