@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 namespace hairpin {
 namespace {
@@ -10,38 +11,61 @@ namespace {
 Stretch ToStretch(const Scene& scene, const std::vector<CrossedEdge>& edges) {
   Stretch stretch;
   for (const CrossedEdge& edge : edges) {
-    stretch.Append(edge, {scene.positions[static_cast<size_t>(edge.left)], scene.positions[static_cast<size_t>(edge.right)]});
+    stretch.Append(edge, {scene.positions[static_cast<size_t>(edge.left)],
+                          scene.positions[static_cast<size_t>(edge.right)]});
   }
   return stretch;
 }
 
-void AppendPoint(const Scene& scene, int cone, const Eigen::Vector2d& position, std::vector<BoundaryPoint>& side) {
-  const int64_t id = cone == CrossedEdge::kInferred ? 0 : scene.ids[static_cast<size_t>(cone)];
-  if (id == 0 || side.empty() || side.back().id != id) side.push_back({id, position});
+std::vector<BoundaryPoint> SideOf(const Scene& scene, const Stretch& stretch, Side side,
+                                  const Pose2& T_local_base) {
+  std::vector<BoundaryPoint> points;
+  for (size_t i = 0; i < stretch.size(); ++i) {
+    const bool left = side == Side::kLeft;
+    const int cone = left ? stretch.edges[i].left : stretch.edges[i].right;
+    const int64_t id = cone == CrossedEdge::kInferred ? 0 : scene.ids[static_cast<size_t>(cone)];
+    if (cone != CrossedEdge::kInferred && !points.empty() && points.back().id == id) continue;
+    points.push_back({id, T_local_base * (left ? stretch.gates[i].left : stretch.gates[i].right)});
+  }
+  return points;
 }
 
 }  // namespace
 
 BoundaryEstimator::BoundaryEstimator(const BoundaryEstimatorParams& params)
-    : params_(params), search_(params.search, params.score), width_seen_(params.one_sided.default_width) {
+    : params_(params),
+      search_(params.search, params.score),
+      width_seen_(params.one_sided.default_width) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw std::invalid_argument(std::string("BoundaryEstimatorParams: ") + what);
+  };
+  require(params.min_existence >= 0.0 && params.min_existence <= 1.0,
+          "min_existence must be in [0, 1]");
+  require(params.max_range > 0.0, "max_range must be > 0");
+  require(params.max_cones >= 1 && static_cast<size_t>(params.max_cones) <= PathSearch::kMaxCones,
+          "max_cones must be in [1, 128]");
+  require(params.min_clear_share >= 0.0 && params.min_clear_share <= 1.0,
+          "min_clear_share must be in [0, 1]");
   Check(params_.one_sided);
   Check(params_.path);
 }
 
-Scene BoundaryEstimator::Select(const Pose2& T_base_local, const std::vector<MapCone>& cones) const {
+Scene BoundaryEstimator::Select(const Pose2& T_base_local,
+                                const std::vector<MapCone>& cones) const {
   std::vector<MapCone> near;
   for (const MapCone& cone : cones) {
+    if (cone.existence < params_.min_existence) continue;
     MapCone in_base = cone;
     in_base.position = T_base_local * cone.position;
-    if (cone.existence < params_.min_existence || in_base.position.norm() > params_.max_range) continue;
-    near.push_back(in_base);
+    if (in_base.position.norm() <= params_.max_range) near.push_back(in_base);
   }
   const auto nearer = [](const MapCone& a, const MapCone& b) {
     const double ra = a.position.squaredNorm(), rb = b.position.squaredNorm();
     return ra < rb || (ra == rb && a.id < b.id);
   };
   std::sort(near.begin(), near.end(), nearer);
-  if (near.size() > static_cast<size_t>(params_.max_cones)) near.resize(static_cast<size_t>(params_.max_cones));
+  if (near.size() > static_cast<size_t>(params_.max_cones))
+    near.resize(static_cast<size_t>(params_.max_cones));
   Scene scene;
   for (const MapCone& cone : near) {
     scene.ids.push_back(cone.id);
@@ -51,47 +75,72 @@ Scene BoundaryEstimator::Select(const Pose2& T_base_local, const std::vector<Map
   return scene;
 }
 
-std::optional<BoundaryEstimator::Hypothesis> BoundaryEstimator::BestOneSided(const Scene& scene) const {
-  std::optional<Hypothesis> best;
+// Best first.
+std::vector<BoundaryEstimator::Hypothesis> BoundaryEstimator::OneSided(const Scene& scene) const {
+  std::vector<Hypothesis> hypotheses;
   for (const Side side : {Side::kLeft, Side::kRight}) {
-    Hypothesis hypothesis{FollowSideFromCar(scene, side, width_seen_, params_.one_sided), {}};
-    if (hypothesis.stretch.empty()) continue;
-    hypothesis.score = ScoreOf(scene, hypothesis.stretch, params_.score);
-    if (!best || hypothesis.score.log_posterior() > best->score.log_posterior()) best = hypothesis;
+    const Stretch stretch = FollowSideFromCar(scene, side, width_seen_, params_.one_sided);
+    if (!stretch.empty()) hypotheses.push_back({stretch, ScoreOf(scene, stretch, params_.score)});
   }
-  return best;
+  const auto better = [](const Hypothesis& a, const Hypothesis& b) {
+    return a.score.log_posterior() > b.score.log_posterior();
+  };
+  std::stable_sort(hypotheses.begin(), hypotheses.end(), better);
+  return hypotheses;
 }
 
-TrackEstimate BoundaryEstimator::Estimate(const Pose2& T_local_base, const std::vector<MapCone>& cones) {
+BoundaryEstimator::Hypothesis BoundaryEstimator::Complete(
+    const Scene& scene, const ScoredPath& path, const std::vector<Hypothesis>& one_sided) const {
+  Hypothesis completed{ToStretch(scene, path.edges), path.score};
+  for (const Hypothesis& side : one_sided)
+    FillJump(side.stretch, params_.one_sided, completed.stretch);
+  ContinueOnOneSide(scene, width_seen_, params_.one_sided, completed.stretch);
+  return completed;
+}
+
+bool BoundaryEstimator::Beats(const Scene& scene, const Hypothesis& one_sided,
+                              const Hypothesis& searched) const {
+  return one_sided.score.log_posterior() - params_.one_sided.log_penalty >
+         ScoreOf(scene, searched.stretch, params_.score).log_posterior();
+}
+
+Fallback BoundaryEstimator::FallbackOf(const Scene& scene, const Stretch& stretch) const {
+  const auto clear = [&](const SideLogRatios& ratios) {
+    return std::min(ratios.left, ratios.right) < params_.one_sided.min_log_ratio;
+  };
+  const auto count = std::count_if(scene.ratios.begin(), scene.ratios.end(), clear);
+  const double share = static_cast<double>(count) / static_cast<double>(scene.ratios.size());
+  if (share < params_.min_clear_share) return Fallback::kColourBlind;
+  const auto [left, right] = stretch.edges.front();
+  const bool inferred = left == CrossedEdge::kInferred || right == CrossedEdge::kInferred;
+  return inferred ? Fallback::kOneSided : Fallback::kNone;
+}
+
+TrackEstimate BoundaryEstimator::Estimate(const Pose2& T_local_base,
+                                          const std::vector<MapCone>& cones) {
   const Scene scene = Select(T_local_base.Inverse(), cones);
   const PathSearchResult found = search_.Search(scene, Triangulate(scene.positions));
+  if (found.winner)
+    width_seen_ = ToStretch(scene, found.winner->edges).MeanWidth().value_or(width_seen_);
+  const std::vector<Hypothesis> one_sided = OneSided(scene);
+
   TrackEstimate estimate;
-  estimate.num_candidates = found.num_candidates;
+  estimate.num_candidates = found.num_candidates + static_cast<int>(one_sided.size());
   std::optional<Hypothesis> best;
-  if (found.winner) {
-    best = {ToStretch(scene, found.winner->edges), found.winner->score};
-    width_seen_ = best->stretch.MeanWidth();
-    for (const Side side : {Side::kLeft, Side::kRight}) {
-      FillJump(FollowSideFromCar(scene, side, width_seen_, params_.one_sided), params_.one_sided, best->stretch);
-    }
-    ContinueOnOneSide(scene, params_.one_sided, best->stretch);
-  }
-  const std::optional<Hypothesis> one_sided = BestOneSided(scene);
-  if (one_sided && (!best || one_sided->score.log_posterior() - params_.one_sided.log_penalty >
-                                 ScoreOf(scene, best->stretch, params_.score).log_posterior())) {
-    best = one_sided;
+  if (found.winner) best = Complete(scene, *found.winner, one_sided);
+  if (found.runner_up) estimate.runner_up = found.runner_up->score;
+  if (!one_sided.empty() && (!best || Beats(scene, one_sided.front(), *best))) {
+    if (best) estimate.runner_up = best->score;
+    best = one_sided.front();
   }
   if (!best) return estimate;
-  const Stretch& stretch = best->stretch;
-  for (size_t i = 0; i < stretch.size(); ++i) {
-    AppendPoint(scene, stretch.edges[i].left, T_local_base * stretch.gates[i].left, estimate.left);
-    AppendPoint(scene, stretch.edges[i].right, T_local_base * stretch.gates[i].right, estimate.right);
-  }
   estimate.valid = true;
-  estimate.path = BuildMiddlePath(Eigen::Vector2d::Zero(), stretch, params_.path);
-  for (PathPoint& point : estimate.path.points) point.position = T_local_base * point.position;
   estimate.winner = best->score;
-  if (found.runner_up) estimate.runner_up = found.runner_up->score;
+  estimate.fallback = FallbackOf(scene, best->stretch);
+  estimate.left = SideOf(scene, best->stretch, Side::kLeft, T_local_base);
+  estimate.right = SideOf(scene, best->stretch, Side::kRight, T_local_base);
+  estimate.path = BuildMiddlePath(Eigen::Vector2d::Zero(), best->stretch, params_.path);
+  for (PathPoint& point : estimate.path.points) point.position = T_local_base * point.position;
   return estimate;
 }
 

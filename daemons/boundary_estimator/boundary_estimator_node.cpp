@@ -18,10 +18,13 @@ std::optional<MapCone> ToMapCone(const local_cone_t& message) {
   observation.covariance_xx_m2 = message.covariance_xx_m2;
   observation.covariance_xy_m2 = message.covariance_xy_m2;
   observation.covariance_yy_m2 = message.covariance_yy_m2;
-  std::copy(std::begin(message.probability), std::end(message.probability), std::begin(observation.probability));
+  std::copy(std::begin(message.probability), std::end(message.probability),
+            std::begin(observation.probability));
   const std::optional<ConeObservation> checked = ToConeObservation(observation);
-  const bool near = std::abs(message.x_m) <= kMaxCoordinate && std::abs(message.y_m) <= kMaxCoordinate;
-  if (!checked || !near || !(message.existence >= 0.0F && message.existence <= 1.0F)) return std::nullopt;
+  const bool near =
+      std::abs(message.x_m) <= kMaxCoordinate && std::abs(message.y_m) <= kMaxCoordinate;
+  if (!checked || !near || !(message.existence >= 0.0F && message.existence <= 1.0F))
+    return std::nullopt;
   return MapCone{message.id, {message.x_m, message.y_m}, checked->colour, message.existence};
 }
 
@@ -146,6 +149,7 @@ BoundaryEstimatorParams LoadBoundaryEstimatorParams(const Config& config) {
   params.min_existence = config.Number("min_existence", {0.0, 1.0});
   params.max_range = config.Number("max_range_m", {5.0, 100.0});
   params.max_cones = config.Integer("max_cones", 3, static_cast<int>(PathSearch::kMaxCones));
+  params.min_clear_share = config.Number("min_clear_share", {0.0, 1.0});
   params.score = LoadScoreParams(config);
   params.search = LoadSearchParams(config.Section("search"));
   params.one_sided = LoadOneSidedParams(config.Section("one_sided"), params.score.min_spacing);
@@ -162,13 +166,17 @@ BoundaryEstimatorNode::BoundaryEstimatorNode(const BoundaryEstimatorParams& para
 void BoundaryEstimatorNode::OnLocalMap(const local_map_t& message) {
   const auto refuse = [this](const std::string& why) { bus_.Refuse(channels::kLocalMap, why); };
   if (message.utime <= last_utime_) return refuse("time goes back");
-  if (std::abs(message.x_m) > kMaxCoordinate || std::abs(message.y_m) > kMaxCoordinate) return refuse("pose out of range");
+  if (std::abs(message.x_m) > kMaxCoordinate || std::abs(message.y_m) > kMaxCoordinate)
+    return refuse("pose out of range");
   std::vector<MapCone> cones;
   std::set<int64_t> ids;
   for (const local_cone_t& cone : message.cones) {
     const std::optional<MapCone> checked = ToMapCone(cone);
-    if (!checked) return refuse("cone " + std::to_string(cone.id) + " has no proper covariance, colour, existence or place");
-    if (!ids.insert(cone.id).second) return refuse("cone " + std::to_string(cone.id) + " stands twice");
+    if (!checked)
+      return refuse("cone " + std::to_string(cone.id) +
+                    " has no proper covariance, colour, existence or place");
+    if (!ids.insert(cone.id).second)
+      return refuse("cone " + std::to_string(cone.id) + " stands twice");
     cones.push_back(*checked);
   }
   last_utime_ = message.utime;

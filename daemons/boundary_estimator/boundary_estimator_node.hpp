@@ -11,8 +11,9 @@ namespace hairpin {
 /// Reads all of `boundary_estimator.yaml`. Throws ConfigError.
 BoundaryEstimatorParams LoadBoundaryEstimatorParams(const Config& config);
 
-/// Answers each LOCAL_MAP with a TRACK. Refused are maps whose time does not increase, and maps with a cone that cannot be:
-/// covariance not positive definite, probabilities out of range, an id that stands twice.
+/// Answers each LOCAL_MAP with a TRACK. Refused are maps whose time does not increase, and maps
+/// with a cone that cannot be: covariance not positive definite, probabilities out of range, an id
+/// that stands twice.
 class BoundaryEstimatorNode {
  public:
   BoundaryEstimatorNode(const BoundaryEstimatorParams& params, Bus& bus);

@@ -11,7 +11,9 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
 using FaceBase = CGAL::Triangulation_face_base_with_info_2<int, Kernel>;
-using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>>;
+using Delaunay =
+    CGAL::Delaunay_triangulation_2<Kernel,
+                                   CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>>;
 
 }  // namespace
 
@@ -30,7 +32,8 @@ Triangulation Triangulate(const std::vector<Eigen::Vector2d>& points) {
     face->info() = Triangulation::kOutside;
   }
   int count = 0;
-  for (auto face = delaunay.finite_faces_begin(); face != delaunay.finite_faces_end(); ++face) face->info() = count++;
+  for (auto face = delaunay.finite_faces_begin(); face != delaunay.finite_faces_end(); ++face)
+    face->info() = count++;
   result.triangles.reserve(static_cast<size_t>(count));
   for (auto face = delaunay.finite_faces_begin(); face != delaunay.finite_faces_end(); ++face) {
     Triangulation::Triangle& triangle = result.triangles.emplace_back();

@@ -16,8 +16,8 @@ struct Triangulation {
   std::vector<Triangle> triangles;
 };
 
-/// Delaunay triangulation with exact predicates. The result depends on `points` and their order alone; of points that
-/// coincide the first is used. Empty where all points lie on one line.
+/// Delaunay triangulation with exact predicates. The result depends on `points` and their order
+/// alone; of points that coincide the first is used. Empty where all points lie on one line.
 Triangulation Triangulate(const std::vector<Eigen::Vector2d>& points);
 
 }  // namespace hairpin

@@ -8,7 +8,9 @@
 namespace hairpin {
 namespace {
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 // Points each `spacing` along the polyline, and its end.
 std::vector<PathPoint> Resample(const std::vector<PathPoint>& corners, double spacing) {
@@ -20,7 +22,8 @@ std::vector<PathPoint> Resample(const std::vector<PathPoint>& corners, double sp
     const double length = step.norm();
     for (; next < length; next += spacing) {
       const double ratio = next / length;
-      points.push_back({from.position + ratio * step, from.width + ratio * (corners[i].width - from.width), false});
+      points.push_back({from.position + ratio * step,
+                        from.width + ratio * (corners[i].width - from.width), false});
     }
     next -= length;
   }
@@ -100,12 +103,17 @@ void Check(const MiddlePathParams& params) {
   require(params.max_extrapolated_curvature >= 0.0, "max_extrapolated_curvature must be >= 0");
 }
 
-MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const Stretch& stretch, const MiddlePathParams& params) {
+MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const Stretch& stretch,
+                           const MiddlePathParams& params) {
   MiddlePath path;
   if (stretch.empty()) return path;
   const std::vector<Gate>& gates = stretch.gates;
-  std::vector<PathPoint> corners{{start, gates.front().width(), false}};
-  for (const Gate& gate : gates) corners.push_back({gate.middle(), gate.width(), false});
+  const double first_width = gates.size() > 1 ? WidthBetween(gates[0], gates[1]) : gates[0].width();
+  std::vector<PathPoint> corners{{start, first_width, false},
+                                 {gates[0].middle(), first_width, false}};
+  for (size_t i = 1; i < gates.size(); ++i) {
+    corners.push_back({gates[i].middle(), WidthBetween(gates[i - 1], gates[i]), false});
+  }
   path.points = Resample(corners, params.point_spacing);
   Smooth(path.points, params.smoothing_passes);
   double length = 0.0;

@@ -8,12 +8,13 @@
 namespace hairpin {
 
 struct MiddlePathParams {
-  double point_spacing = 0.0;         // m, along the path
-  int smoothing_passes = 0;           // of a (1, 2, 1) / 4 filter over the points
-  double max_length = 0.0;            // m
-  double extrapolation = 0.0;         // m, past the last gate with cones on both sides; cones of one side count into it
-  double curvature_window = 0.0;      // m of path whose bend the extrapolation goes on with
-  double curvature_decay = 0.0;       // m, along the extrapolation, to 1/e of that bend
+  double point_spacing = 0.0;  // m, along the path
+  int smoothing_passes = 0;    // of a (1, 2, 1) / 4 filter over the points
+  double max_length = 0.0;     // m
+  double extrapolation =
+      0.0;  // m, past the last gate with cones on both sides; cones of one side count into it
+  double curvature_window = 0.0;            // m of path whose bend the extrapolation goes on with
+  double curvature_decay = 0.0;             // m, along the extrapolation, to 1/e of that bend
   double max_extrapolated_curvature = 0.0;  // 1/m
 };
 
@@ -32,8 +33,9 @@ struct MiddlePath {
   double seen_length = 0.0;       // m, of the part that is not extrapolated
 };
 
-/// From `start` through the middles of the stretch, evenly spaced and smoothed, then on with its bend for the length of the
-/// extrapolation. An empty stretch: no points.
-MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const Stretch& stretch, const MiddlePathParams& params);
+/// From `start` through the middles of the stretch, evenly spaced and smoothed, then on with its
+/// bend for the length of the extrapolation. An empty stretch: no points.
+MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const Stretch& stretch,
+                           const MiddlePathParams& params);
 
 }  // namespace hairpin

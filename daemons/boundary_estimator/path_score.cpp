@@ -17,20 +17,24 @@ void Check(const PathScoreParams& params) {
     require(params.setpoint[j] >= 0.0, "setpoint[" + std::to_string(j) + "] must be >= 0");
     require(params.normaliser[j] > 0.0, "normaliser[" + std::to_string(j) + "] must be > 0");
   }
-  require(params.min_probability > 0.0 && params.min_probability < 0.5, "min_probability must be in (0, 0.5)");
+  require(params.min_probability > 0.0 && params.min_probability < 0.5,
+          "min_probability must be in (0, 0.5)");
   require(params.min_spacing >= 0.0, "min_spacing must be >= 0");
   require(params.min_segment >= 0.0, "min_segment must be >= 0");
 }
 
 SideLogRatios ToSideLogRatios(const ColourDistribution& colour, double min_probability) {
-  const auto clamped = [&](double p) { return std::clamp(p, min_probability, 1.0 - min_probability); };
+  const auto clamped = [&](double p) {
+    return std::clamp(p, min_probability, 1.0 - min_probability);
+  };
   const double blue = clamped(ProbabilityOf(colour, ConeColour::kBlue));
   const double yellow = clamped(ProbabilityOf(colour, ConeColour::kYellow));
-  const double either =
-      clamped(ProbabilityOf(colour, ConeColour::kUnknown) + ProbabilityOf(colour, ConeColour::kOrange) +
-              ProbabilityOf(colour, ConeColour::kOrangeLarge));
+  const double either = clamped(ProbabilityOf(colour, ConeColour::kUnknown) +
+                                ProbabilityOf(colour, ConeColour::kOrange) +
+                                ProbabilityOf(colour, ConeColour::kOrangeLarge));
   const double log_most = std::log(std::max({blue, yellow, either}));
-  return {std::log(std::max(blue, either)) - log_most, std::log(std::max(yellow, either)) - log_most};
+  return {std::log(std::max(blue, either)) - log_most,
+          std::log(std::max(yellow, either)) - log_most};
 }
 
 void PathFeatures::Deviation::Add(double value) {
@@ -40,12 +44,16 @@ void PathFeatures::Deviation::Add(double value) {
   squares += difference * (value - mean);
 }
 
-double PathFeatures::Deviation::value() const { return count == 0 ? 0.0 : std::sqrt(squares / count); }
+double PathFeatures::Deviation::value() const {
+  return count == 0 ? 0.0 : std::sqrt(squares / count);
+}
 
-double DistanceToSegment(const Eigen::Vector2d& point, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+double DistanceToSegment(const Eigen::Vector2d& point, const Eigen::Vector2d& from,
+                         const Eigen::Vector2d& to) {
   const Eigen::Vector2d step = to - from;
   const double squared = step.squaredNorm();
-  const double ratio = squared > 0.0 ? std::clamp((point - from).dot(step) / squared, 0.0, 1.0) : 0.0;
+  const double ratio =
+      squared > 0.0 ? std::clamp((point - from).dot(step) / squared, 0.0, 1.0) : 0.0;
   return (point - from - ratio * step).norm();
 }
 
@@ -64,10 +72,12 @@ void PathFeatures::Cross(const Eigen::Vector2d& midpoint, double min_segment) {
 
 FeatureValues PathFeatures::values() const {
   const double largest_turn = std::acos(std::max(least_cosine_, -1.0));
-  return {largest_turn, left_.value(), right_.value(), width_.value(), static_cast<double>(edges_), length_};
+  return {largest_turn, left_.value(), right_.value(), width_.value(), static_cast<double>(edges_),
+          length_};
 }
 
-PathScore Score(const FeatureValues& features, double log_likelihood, const PathScoreParams& params) {
+PathScore Score(const FeatureValues& features, double log_likelihood,
+                const PathScoreParams& params) {
   PathScore score;
   double cost = 0.0;
   for (size_t j = 0; j < kNumFeatures; ++j) {

@@ -11,7 +11,9 @@ namespace {
 
 constexpr int kNoParent = -1;
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 // Positive where the origin lies to the left of the line from a to b.
 double OriginSide(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return Cross(b - a, -a); }
@@ -35,7 +37,8 @@ void Check(const PathSearchParams& params) {
   require(params.min_width > 0.0, "min_width must be > 0");
   require(params.max_width > params.min_width, "max_width must be > min_width");
   require(params.max_spacing > 0.0, "max_spacing must be > 0");
-  require(params.max_turn > 0.0 && params.max_turn <= std::numbers::pi, "max_turn must be in (0, pi]");
+  require(params.max_turn > 0.0 && params.max_turn <= std::numbers::pi,
+          "max_turn must be in (0, pi]");
 }
 
 PathSearch::PathSearch(const PathSearchParams& params, const PathScoreParams& score_params)
@@ -45,7 +48,8 @@ PathSearch::PathSearch(const PathSearchParams& params, const PathScoreParams& sc
 }
 
 PathSearchResult PathSearch::Search(const Scene& scene, const Triangulation& triangulation) {
-  if (scene.positions.size() > kMaxCones) throw std::invalid_argument("PathSearch: more than 128 positions");
+  if (scene.positions.size() > kMaxCones)
+    throw std::invalid_argument("PathSearch: more than 128 positions");
   const Problem problem{scene.positions, scene.ratios, triangulation.triangles};
   nodes_.clear();
   level_.clear();
@@ -60,11 +64,13 @@ PathSearchResult PathSearch::Search(const Scene& scene, const Triangulation& tri
       const double difference = nodes_[Index(a)].log_posterior - nodes_[Index(b)].log_posterior;
       return difference > 0.0 || (difference == 0.0 && a < b);
     };
-    std::partial_sort(level_.begin(), level_.begin() + static_cast<std::ptrdiff_t>(kept), level_.end(), better);
+    std::partial_sort(level_.begin(), level_.begin() + static_cast<std::ptrdiff_t>(kept),
+                      level_.end(), better);
     for (size_t i = 0; i < kept; ++i) Expand(problem, level_[i]);
   }
   PathSearchResult result;
-  result.num_candidates = static_cast<int>(nodes_.size());
+  const auto has_gate = [](const Node& node) { return node.features.edges() > 0; };
+  result.num_candidates = static_cast<int>(std::count_if(nodes_.begin(), nodes_.end(), has_gate));
   if (const auto winner = Best(std::vector<bool>(nodes_.size(), false))) {
     result.winner = PathTo(*winner);
     if (const auto second = Best(RelativesOf(*winner))) result.runner_up = PathTo(*second);
@@ -73,7 +79,8 @@ PathSearchResult PathSearch::Search(const Scene& scene, const Triangulation& tri
 }
 
 void PathSearch::AddRoots(const Problem& problem) {
-  // Inside the hull a path leaves the triangle that holds the car; outside it enters through the hull edges in sight.
+  // Inside the hull a path leaves the triangle that holds the car; outside it enters through the
+  // hull edges in sight.
   for (size_t t = 0; t < problem.triangles.size(); ++t) {
     const auto& [vertex, neighbour] = problem.triangles[t];
     std::array<bool, 3> inside{};
@@ -93,13 +100,15 @@ void PathSearch::AddRoots(const Problem& problem) {
   }
 }
 
-void PathSearch::AddRoot(const Problem& problem, const CrossedEdge& edge, int from_triangle, int next_triangle) {
+void PathSearch::AddRoot(const Problem& problem, const CrossedEdge& edge, int from_triangle,
+                         int next_triangle) {
   Node node{};
   node.parent = kNoParent;
   node.edge = edge;
   node.next_triangle = next_triangle;
   node.features = PathFeatures(Eigen::Vector2d::Zero(), Eigen::Vector2d::UnitX());
-  node.log_likelihood = problem.ratios[Index(edge.left)].left + problem.ratios[Index(edge.right)].right;
+  node.log_likelihood =
+      problem.ratios[Index(edge.left)].left + problem.ratios[Index(edge.right)].right;
   node.cones.set(Index(edge.left));
   node.cones.set(Index(edge.right));
   if (from_triangle != Triangulation::kOutside) node.triangles.set(Index(from_triangle));
@@ -116,11 +125,13 @@ void PathSearch::Expand(const Problem& problem, int parent) {
   for (size_t i = 0; i < 3; ++i) {
     // Leaving across the edge opposite the old left cone makes the third cone the new left one.
     if (vertex[i] == edge.left) AddChild(problem, parent, Third(vertex, edge), true, neighbour[i]);
-    if (vertex[i] == edge.right) AddChild(problem, parent, Third(vertex, edge), false, neighbour[i]);
+    if (vertex[i] == edge.right)
+      AddChild(problem, parent, Third(vertex, edge), false, neighbour[i]);
   }
 }
 
-void PathSearch::AddChild(const Problem& problem, int parent, int vertex, bool on_left, int next_triangle) {
+void PathSearch::AddChild(const Problem& problem, int parent, int vertex, bool on_left,
+                          int next_triangle) {
   Node node = nodes_[Index(parent)];
   if (node.cones.test(Index(vertex))) return;
   int& side = on_left ? node.edge.left : node.edge.right;
@@ -130,7 +141,8 @@ void PathSearch::AddChild(const Problem& problem, int parent, int vertex, bool o
   const bool counts = between_gates && spacing >= score_params_.min_spacing;
   if (between_gates) {
     const int opposite = on_left ? node.edge.right : node.edge.left;
-    node.features.AddWidth(DistanceToSegment(problem.positions[Index(opposite)], problem.positions[Index(side)],
+    node.features.AddWidth(DistanceToSegment(problem.positions[Index(opposite)],
+                                             problem.positions[Index(side)],
                                              problem.positions[Index(vertex)]));
   }
   side = vertex;
@@ -154,9 +166,11 @@ void PathSearch::CrossAndKeep(const Problem& problem, Node& node) {
   const double width = (left - right).norm();
   const bool before_first_gate = node.features.edges() == 0;
   if (width < params_.min_width || (width > params_.max_width && !before_first_gate)) return;
-  if (width <= params_.max_width) node.features.Cross(0.5 * (left + right), score_params_.min_segment);
+  if (width <= params_.max_width)
+    node.features.Cross(0.5 * (left + right), score_params_.min_segment);
   if (node.features.least_cosine() < least_cosine_) return;
-  node.log_posterior = Score(node.features.values(), node.log_likelihood, score_params_).log_posterior();
+  node.log_posterior =
+      Score(node.features.values(), node.log_likelihood, score_params_).log_posterior();
   nodes_.push_back(node);
 }
 
@@ -177,14 +191,17 @@ std::vector<bool> PathSearch::RelativesOf(int node) const {
     const int parent = nodes_[i].parent;
     relatives[i] = parent != kNoParent && relatives[Index(parent)];
   }
-  for (int i = nodes_[Index(node)].parent; i != kNoParent; i = nodes_[Index(i)].parent) relatives[Index(i)] = true;
+  for (int i = nodes_[Index(node)].parent; i != kNoParent; i = nodes_[Index(i)].parent)
+    relatives[Index(i)] = true;
   return relatives;
 }
 
 ScoredPath PathSearch::PathTo(int node) const {
   ScoredPath path;
-  path.score = Score(nodes_[Index(node)].features.values(), nodes_[Index(node)].log_likelihood, score_params_);
-  for (int i = node; i != kNoParent && nodes_[Index(i)].features.edges() > 0; i = nodes_[Index(i)].parent) {
+  path.score = Score(nodes_[Index(node)].features.values(), nodes_[Index(node)].log_likelihood,
+                     score_params_);
+  for (int i = node; i != kNoParent && nodes_[Index(i)].features.edges() > 0;
+       i = nodes_[Index(i)].parent) {
     path.edges.push_back(nodes_[Index(i)].edge);
   }
   std::reverse(path.edges.begin(), path.edges.end());

@@ -31,13 +31,15 @@ struct ScoredPath {
 struct PathSearchResult {
   std::optional<ScoredPath> winner;
   std::optional<ScoredPath> runner_up;  // the best that neither begins nor continues the winner
-  int num_candidates = 0;
+  int num_candidates = 0;               // paths that were scored
 };
 
-/// Tree of middle paths through a triangulation [paper III-D]: from the car at the origin, heading along x, through the
-/// midpoints of the edges crossed. A path enters no triangle twice and has no cone twice, on whichever side. Every node is a
-/// candidate; before its first gate a path may cross edges too wide for one, where cones near the car are missing: they
-/// count in colour alone. At each depth the `beam_width` best by log posterior are expanded. Ties go to the candidate found first.
+/// Tree of middle paths through a triangulation [paper III-D]: from the car at the origin, heading
+/// along x, through the midpoints of the edges crossed. A path enters no triangle twice and has no
+/// cone twice, on whichever side. Every node is a candidate; before its first gate a path may cross
+/// edges too wide for one, where cones near the car are missing: they count in colour alone. At
+/// each depth the `beam_width` best by log posterior are expanded. Ties go to the candidate found
+/// first.
 class PathSearch {
  public:
   static constexpr size_t kMaxCones = 128;
@@ -45,7 +47,8 @@ class PathSearch {
 
   PathSearch(const PathSearchParams& params, const PathScoreParams& score_params);
 
-  /// `triangulation` is that of the scene's positions. Throws std::invalid_argument for more than kMaxCones of them.
+  /// `triangulation` is that of the scene's positions. Throws std::invalid_argument for more than
+  /// kMaxCones of them.
   PathSearchResult Search(const Scene& scene, const Triangulation& triangulation);
 
  private:
@@ -66,7 +69,8 @@ class PathSearch {
   };
 
   void AddRoots(const Problem& problem);
-  void AddRoot(const Problem& problem, const CrossedEdge& edge, int from_triangle, int next_triangle);
+  void AddRoot(const Problem& problem, const CrossedEdge& edge, int from_triangle,
+               int next_triangle);
   void Expand(const Problem& problem, int parent);
   void AddChild(const Problem& problem, int parent, int vertex, bool on_left, int next_triangle);
   void CrossAndKeep(const Problem& problem, Node& node);

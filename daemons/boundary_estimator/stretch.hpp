@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "daemons/boundary_estimator/path_score.hpp"
@@ -15,8 +16,8 @@ struct Scene {
   std::vector<SideLogRatios> ratios;
 };
 
-/// A line across the track, by its cones: indices into a scene. Of a crossed edge of the triangulation both are there;
-/// where only one side was seen the other is kInferred.
+/// A line across the track, by its cones: indices into a scene. Of a crossed edge of the
+/// triangulation both are there; where only one side was seen the other is kInferred.
 struct CrossedEdge {
   static constexpr int kInferred = -1;
   int left;
@@ -40,12 +41,17 @@ struct Stretch {
   size_t size() const { return gates.size(); }
   bool empty() const { return gates.empty(); }
   void Append(const CrossedEdge& edge, const Gate& gate);
-  /// Where the middles end, and in which direction (unit vector); those of the car for an empty stretch.
+  /// Where the middles end, and in which direction (unit vector); those of the car for an empty
+  /// stretch.
   Eigen::Vector2d end() const;
   Eigen::Vector2d end_direction() const;
-  /// Mean width across the direction of the middles, for the edges stand askew. Not for an empty stretch.
-  double MeanWidth() const;
+  /// Mean of WidthBetween() over the stretch; empty for fewer than two gates.
+  std::optional<double> MeanWidth() const;
 };
+
+/// Width of the track where one side or both went on from gate to gate: the distance of a cone from
+/// the stretch of side opposite. Edges are longer than that: every second one stands askew.
+double WidthBetween(const Gate& before, const Gate& gate);
 
 /// Features and score of a whole stretch, anew.
 PathScore ScoreOf(const Scene& scene, const Stretch& stretch, const PathScoreParams& params);

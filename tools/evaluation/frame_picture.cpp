@@ -5,17 +5,21 @@
 namespace hairpin {
 namespace {
 
-constexpr double kRadius = 25.0;          // m about the car
+constexpr double kRadius = 25.0;  // m about the car
 constexpr double kPixelsPerMetre = 20.0;
-constexpr double kDrivenAhead = 30.0;     // m
+constexpr double kDrivenAhead = 30.0;  // m
 
 const char* PaintOf(ConeColour colour) {
   switch (colour) {
-    case ConeColour::kBlue: return "#1f5fd0";
-    case ConeColour::kYellow: return "#e0b000";
+    case ConeColour::kBlue:
+      return "#1f5fd0";
+    case ConeColour::kYellow:
+      return "#e0b000";
     case ConeColour::kOrange:
-    case ConeColour::kOrangeLarge: return "#f07000";
-    case ConeColour::kUnknown: break;
+    case ConeColour::kOrangeLarge:
+      return "#f07000";
+    case ConeColour::kUnknown:
+      break;
   }
   return "#808080";
 }
@@ -36,13 +40,13 @@ class Canvas {
   }
 
   void Dot(const Eigen::Vector2d& point, double radius_px, const char* paint) {
-    svg_ << "<circle cx=\"" << X(point) << "\" cy=\"" << Y(point) << "\" r=\"" << radius_px << "\" fill=\"" << paint
-         << "\"/>\n";
+    svg_ << "<circle cx=\"" << X(point) << "\" cy=\"" << Y(point) << "\" r=\"" << radius_px
+         << "\" fill=\"" << paint << "\"/>\n";
   }
 
   void Text(double line, const std::string& text) {
-    svg_ << "<text x=\"10\" y=\"" << 20.0 * line << "\" font-family=\"monospace\" font-size=\"14\">" << text
-         << "</text>\n";
+    svg_ << "<text x=\"10\" y=\"" << 20.0 * line << "\" font-family=\"monospace\" font-size=\"14\">"
+         << text << "</text>\n";
   }
 
   std::string Finish() {
@@ -51,23 +55,29 @@ class Canvas {
   }
 
  private:
-  double X(const Eigen::Vector2d& point) const { return kPixelsPerMetre * (kRadius + point.x() - centre_.x()); }
-  double Y(const Eigen::Vector2d& point) const { return kPixelsPerMetre * (kRadius - point.y() + centre_.y()); }
+  double X(const Eigen::Vector2d& point) const {
+    return kPixelsPerMetre * (kRadius + point.x() - centre_.x());
+  }
+  double Y(const Eigen::Vector2d& point) const {
+    return kPixelsPerMetre * (kRadius - point.y() + centre_.y());
+  }
 
   Eigen::Vector2d centre_;
   std::ostringstream svg_;
 };
 
 void DrawTrack(Canvas& canvas, const TrackEstimate& estimate) {
-  for (const auto& [side, style] : {std::pair(&estimate.left, "stroke=\"#1f5fd0\" stroke-width=\"2\""),
-                                    std::pair(&estimate.right, "stroke=\"#e0b000\" stroke-width=\"2\"")}) {
+  for (const auto& [side, style] :
+       {std::pair(&estimate.left, "stroke=\"#1f5fd0\" stroke-width=\"2\""),
+        std::pair(&estimate.right, "stroke=\"#e0b000\" stroke-width=\"2\"")}) {
     Polyline line;
     for (const BoundaryPoint& point : *side) line.push_back(point.position);
     canvas.Line(line, style);
   }
   Polyline seen, extrapolated;
   for (const PathPoint& point : estimate.path.points) {
-    if (point.extrapolated && extrapolated.empty() && !seen.empty()) extrapolated.push_back(seen.back());
+    if (point.extrapolated && extrapolated.empty() && !seen.empty())
+      extrapolated.push_back(seen.back());
     (point.extrapolated ? extrapolated : seen).push_back(point.position);
   }
   canvas.Line(seen, "stroke=\"#00a040\" stroke-width=\"3\"");
@@ -77,7 +87,8 @@ void DrawTrack(Canvas& canvas, const TrackEstimate& estimate) {
 std::string Describe(const char* name, const PathScore& score) {
   std::ostringstream text;
   text.precision(3);
-  text << name << " posterior " << score.log_posterior() << " = prior " << score.log_prior << " (terms";
+  text << name << " posterior " << score.log_posterior() << " = prior " << score.log_prior
+       << " (terms";
   for (const double term : score.term) text << ' ' << term;
   text << ") + colour " << score.log_likelihood;
   return text.str();
@@ -85,15 +96,19 @@ std::string Describe(const char* name, const PathScore& score) {
 
 }  // namespace
 
-std::string DrawFrame(const std::vector<RecordedFrame>& run, size_t frame, const PlannerFrame& result) {
+std::string DrawFrame(const std::vector<RecordedFrame>& run, size_t frame,
+                      const PlannerFrame& result) {
   const RecordedTrack track(run);
   const Pose2& T_map_base = run[frame].T_map_base;
   Canvas canvas(T_map_base.position());
-  for (const Segment& segment : track.boundaries()) canvas.Line({segment.from, segment.to}, "stroke=\"#d0d0d0\" stroke-width=\"4\"");
+  for (const Segment& segment : track.boundaries())
+    canvas.Line({segment.from, segment.to}, "stroke=\"#d0d0d0\" stroke-width=\"4\"");
   canvas.Line(track.DrivenAhead(frame, kDrivenAhead), "stroke=\"#c080ff\" stroke-width=\"1\"");
   DrawTrack(canvas, result.estimate);
-  for (const MapCone& cone : run[frame].cones) canvas.Dot(cone.position, 6.0, PaintOf(MostProbable(cone.colour)));
-  canvas.Line({T_map_base * Eigen::Vector2d(-1.2, 0.0), T_map_base * Eigen::Vector2d(1.4, 0.0)}, "stroke=\"red\" stroke-width=\"8\"");
+  for (const MapCone& cone : run[frame].cones)
+    canvas.Dot(cone.position, 6.0, PaintOf(MostProbable(cone.colour)));
+  canvas.Line({T_map_base * Eigen::Vector2d(-1.2, 0.0), T_map_base * Eigen::Vector2d(1.4, 0.0)},
+              "stroke=\"red\" stroke-width=\"8\"");
   std::ostringstream title;
   title.precision(3);
   title << "frame " << frame << ", path " << result.estimate.path.length << " m, on cones "

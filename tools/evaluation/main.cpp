@@ -23,21 +23,27 @@ struct PlannerOptions {
 
 void DefinePlanner(CLI::App& app, PlannerOptions& options) {
   app.add_option("FILE", options.file, "recorded run: JSON list of frames")->required();
-  app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")->envname("HAIRPIN_CONFIG_DIR")->capture_default_str();
-  app.add_option("--set", options.overrides, "KEY=VALUE in place of the config file's value (repeatable)")->allow_extra_args(false);
+  app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")
+      ->envname("HAIRPIN_CONFIG_DIR")
+      ->capture_default_str();
+  app.add_option("--set", options.overrides,
+                 "KEY=VALUE in place of the config file's value (repeatable)")
+      ->allow_extra_args(false);
   app.add_flag("--json", options.json, "print one JSON object");
   CLI::Option* picture = app.add_option("--picture", options.picture, "draw this frame");
   picture->needs(app.add_option("--out", options.out, "the picture's .svg file")->needs(picture));
 }
 
 void PrintTable(const nlohmann::json& figures) {
-  for (const auto& [key, value] : figures.items()) std::cout << std::left << std::setw(30) << key << value << '\n';
+  for (const auto& [key, value] : figures.items())
+    std::cout << std::left << std::setw(30) << key << value << '\n';
 }
 
 void PrintFramesToLookAt(const PlannerReport& report) {
   std::cout << "frames that cross: ";
   for (size_t i = 0; i < report.frames.size(); ++i) {
-    if (report.frames[i].crosses) std::cout << i << (report.frames[i].crosses_observed ? " " : "(unseen) ");
+    if (report.frames[i].crosses)
+      std::cout << i << (report.frames[i].crosses_observed ? " " : "(unseen) ");
   }
   std::cout << "\nframes that fall short of the seen stretch: ";
   for (size_t i = 0; i < report.frames.size(); ++i) {
@@ -46,9 +52,11 @@ void PrintFramesToLookAt(const PlannerReport& report) {
   std::cout << '\n';
 }
 
-void Draw(const std::vector<RecordedFrame>& run, const PlannerReport& report, size_t frame, const std::string& out) {
+void Draw(const std::vector<RecordedFrame>& run, const PlannerReport& report, size_t frame,
+          const std::string& out) {
   if (frame >= report.frames.size()) {
-    throw RecordingError("--picture " + std::to_string(frame) + ": the run has frames 0 to " + std::to_string(report.frames.size() - 1));
+    throw RecordingError("--picture " + std::to_string(frame) + ": the run has frames 0 to " +
+                         std::to_string(report.frames.size() - 1));
   }
   std::ofstream stream(out);
   stream << DrawFrame(run, frame, report.frames[frame]);

@@ -35,7 +35,8 @@ double Quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-PlannerReport EvaluatePlanner(const std::vector<RecordedFrame>& run, const BoundaryEstimatorParams& params) {
+PlannerReport EvaluatePlanner(const std::vector<RecordedFrame>& run,
+                              const BoundaryEstimatorParams& params) {
   const RecordedTrack track(run);
   BoundaryEstimator estimator(params);
   const MonotonicClock clock;
@@ -64,10 +65,12 @@ nlohmann::json ToJson(const PlannerReport& report) {
   return {
       {"frames", frames.size()},
       {"reach_15m_percent", percent([](Frame f) { return f.estimate.path.length >= kFull; })},
-      {"reach_seen_percent", percent([](Frame f) { return f.estimate.path.length >= f.seen_length - kTolerance; })},
+      {"reach_seen_percent",
+       percent([](Frame f) { return f.estimate.path.length >= f.seen_length - kTolerance; })},
       {"cross_15m_percent", percent([](Frame f) { return f.crosses; })},
       {"cross_observed_percent", percent([](Frame f) { return f.crosses_observed; })},
-      {"reach_15m_on_cones_percent", percent([](Frame f) { return f.estimate.path.seen_length >= kFull; })},
+      {"reach_15m_on_cones_percent",
+       percent([](Frame f) { return f.estimate.path.seen_length >= kFull; })},
       {"reach_seen_on_cones_percent",
        percent([](Frame f) { return f.estimate.path.seen_length >= f.seen_length - kTolerance; })},
       {"seen_14m_percent", percent([](Frame f) { return f.seen_length >= 14.0; })},

@@ -67,7 +67,8 @@ Projection Project(const Eigen::Vector2d& point, const Polyline& line) {
   for (size_t i = 1; i < line.size(); ++i) {
     const Eigen::Vector2d step = line[i] - line[i - 1];
     const double squared = step.squaredNorm();
-    const double ratio = squared > 0.0 ? std::clamp((point - line[i - 1]).dot(step) / squared, 0.0, 1.0) : 0.0;
+    const double ratio =
+        squared > 0.0 ? std::clamp((point - line[i - 1]).dot(step) / squared, 0.0, 1.0) : 0.0;
     const double distance = (point - line[i - 1] - ratio * step).norm();
     if (distance < nearest.distance) nearest = {distance, done + ratio * step.norm()};
     done += step.norm();

@@ -26,7 +26,8 @@ double Length(const Polyline& line);
 /// The first `length` metres; all of a shorter line.
 Polyline Clipped(const Polyline& line, double length);
 
-/// The point `along` metres from the start; the last one past the end. Throws std::invalid_argument for an empty line.
+/// The point `along` metres from the start; the last one past the end. Throws std::invalid_argument
+/// for an empty line.
 Eigen::Vector2d PointAt(const Polyline& line, double along);
 
 /// Throws std::invalid_argument for an empty line.

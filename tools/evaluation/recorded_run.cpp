@@ -11,8 +11,9 @@ namespace {
 using nlohmann::json;
 
 // In the order of the lists in the file.
-constexpr std::array<ConeColour, 5> kColours{ConeColour::kUnknown, ConeColour::kYellow, ConeColour::kBlue,
-                                             ConeColour::kOrange, ConeColour::kOrangeLarge};
+constexpr std::array<ConeColour, 5> kColours{ConeColour::kUnknown, ConeColour::kYellow,
+                                             ConeColour::kBlue, ConeColour::kOrange,
+                                             ConeColour::kOrangeLarge};
 
 const json& Field(const json& frame, const char* key) {
   if (!frame.is_object()) throw RecordingError("is no object");
@@ -22,7 +23,8 @@ const json& Field(const json& frame, const char* key) {
 }
 
 double ReadNumber(const json& value, const std::string& name) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) throw RecordingError(name + ": is no finite number");
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    throw RecordingError(name + ": is no finite number");
   return value.get<double>();
 }
 
@@ -32,7 +34,8 @@ Eigen::Vector2d ReadPoint(const json& value, const std::string& name) {
 }
 
 std::vector<MapCone> ReadCones(const json& lists) {
-  if (!lists.is_array() || lists.size() != kColours.size()) throw RecordingError("slam_cones: must be five lists");
+  if (!lists.is_array() || lists.size() != kColours.size())
+    throw RecordingError("slam_cones: must be five lists");
   std::vector<MapCone> cones;
   for (size_t colour = 0; colour < kColours.size(); ++colour) {
     const std::string name = "slam_cones[" + std::to_string(colour) + "]";
@@ -74,7 +77,8 @@ json Parse(const std::string& file) {
 
 std::vector<RecordedFrame> LoadRecordedRun(const std::string& file) {
   const json document = Parse(file);
-  if (!document.is_array() || document.empty()) throw RecordingError(file + ": is no list of frames");
+  if (!document.is_array() || document.empty())
+    throw RecordingError(file + ": is no list of frames");
   std::vector<RecordedFrame> run;
   for (const json& frame : document) {
     try {

@@ -22,8 +22,9 @@ struct RecordedFrame {
   std::vector<MapCone> cones;  // the map as it was known then
 };
 
-/// Reads a JSON list of frames {car_position: [x, y], car_direction: [dx, dy], car_speed, slam_cones: five lists of [x, y]:
-/// unknown, yellow, blue, small orange, large orange}; metres, m/s. Throws RecordingError.
+/// Reads a JSON list of frames {car_position: [x, y], car_direction: [dx, dy], car_speed,
+/// slam_cones: five lists of [x, y]: unknown, yellow, blue, small orange, large orange}; metres,
+/// m/s. Throws RecordingError.
 std::vector<RecordedFrame> LoadRecordedRun(const std::string& file);
 
 }  // namespace hairpin

@@ -24,7 +24,8 @@ void RecordedTrack::FindLapBefore() {
     if (along_.back() - along_[i] < kMinLap) continue;
     const bool passed = lap_before_ < driven_.size();
     if (passed && distance(i) > kSamePlace) break;
-    if (distance(i) <= kSamePlace && (!passed || distance(i) < distance(lap_before_))) lap_before_ = i;
+    if (distance(i) <= kSamePlace && (!passed || distance(i) < distance(lap_before_)))
+      lap_before_ = i;
   }
 }
 
@@ -43,12 +44,14 @@ Polyline RecordedTrack::DrivenAhead(size_t frame, double length) const {
   return line;
 }
 
-double RecordedTrack::SeenLength(const std::vector<RecordedFrame>& run, size_t frame, double max_length) const {
+double RecordedTrack::SeenLength(const std::vector<RecordedFrame>& run, size_t frame,
+                                 double max_length) const {
   const Polyline line = DrivenAhead(frame, max_length);
   const double end = std::min(Length(line), max_length);
   const auto sees = [&](const Eigen::Vector2d& point, ConeColour colour) {
     return std::any_of(run[frame].cones.begin(), run[frame].cones.end(), [&](const MapCone& cone) {
-      const ConeColour other = colour == ConeColour::kBlue ? ConeColour::kYellow : ConeColour::kBlue;
+      const ConeColour other =
+          colour == ConeColour::kBlue ? ConeColour::kYellow : ConeColour::kBlue;
       return MostProbable(cone.colour) != other && (cone.position - point).norm() <= kSeenRadius;
     });
   };
@@ -60,9 +63,11 @@ double RecordedTrack::SeenLength(const std::vector<RecordedFrame>& run, size_t f
 }
 
 void RecordedTrack::ChainBoundaries(const std::vector<MapCone>& final_map) {
-  // One lap of the driven line orders the cones of each side; orange ones belong to the side they stand on.
+  // One lap of the driven line orders the cones of each side; orange ones belong to the side they
+  // stand on.
   const bool closed = lap_before_ < driven_.size();
-  const Polyline lap(driven_.begin() + static_cast<std::ptrdiff_t>(closed ? lap_before_ : 0), driven_.end());
+  const Polyline lap(driven_.begin() + static_cast<std::ptrdiff_t>(closed ? lap_before_ : 0),
+                     driven_.end());
   std::multimap<double, Eigen::Vector2d> sides[2];
   for (const MapCone& cone : final_map) {
     const Projection projection = Project(cone.position, lap);
@@ -80,7 +85,8 @@ void RecordedTrack::ChainBoundaries(const std::vector<MapCone>& final_map) {
     for (const auto& [along, position] : side) chain.push_back(position);
     if (closed && chain.size() > 2) chain.push_back(chain.front());
     for (size_t i = 1; i < chain.size(); ++i) {
-      if ((chain[i] - chain[i - 1]).norm() <= kMaxGap) boundaries_.push_back({chain[i - 1], chain[i]});
+      if ((chain[i] - chain[i - 1]).norm() <= kMaxGap)
+        boundaries_.push_back({chain[i - 1], chain[i]});
     }
   }
 }
