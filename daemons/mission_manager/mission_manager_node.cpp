@@ -51,6 +51,7 @@ LapCounterParams LoadLaps(const Config& config) {
   LapCounterParams laps;
   laps.gate.range = config.Number("gate_range_m", {1.0, 50.0});
   laps.gate.min_mass = config.Number("gate_min_mass", {0.05, 10.0});
+  laps.gate.min_cone_mass = config.Number("gate_min_cone_mass", {0.01, 1.0});
   laps.gate.min_width = config.Number("gate_min_width_m", {0.5, 20.0});
   laps.gate.max_width = config.Number("gate_max_width_m", {0.5, 30.0});
   laps.min_lap_length = config.Number("min_lap_length_m", {1.0, 1000.0});

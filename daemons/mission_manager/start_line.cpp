@@ -7,8 +7,6 @@
 namespace hairpin {
 namespace {
 
-// A cone of less mass than this adds work, not knowledge.
-constexpr double kLeastMass = 0.05;
 // Farther past the line than this at one step, the car has not crossed it: the line has jumped [m].
 constexpr double kPassedBy = 3.0;
 
@@ -34,6 +32,7 @@ void Check(const GateParams& params) {
   };
   require(params.range > 0.0, "gate_range_m must be > 0");
   require(params.min_mass > 0.0, "gate_min_mass must be > 0");
+  require(params.min_cone_mass > 0.0, "gate_min_cone_mass must be > 0");
   require(params.min_width > 0.0, "gate_min_width_m must be > 0");
   require(params.max_width > params.min_width, "gate_max_width_m must be > gate_min_width_m");
 }
@@ -43,7 +42,7 @@ std::optional<StartLine> FindGate(const std::vector<GateCone>& cones, const Pose
   std::vector<GateCone> near;
   for (const GateCone& cone : cones) {
     const bool in_range = (cone.position - T_frame_base.position()).norm() <= params.range;
-    if (in_range && cone.mass >= kLeastMass) near.push_back(cone);
+    if (in_range && cone.mass >= params.min_cone_mass) near.push_back(cone);
   }
   size_t a = 0;
   size_t b = 0;

@@ -28,10 +28,11 @@ struct GateCone {
 };
 
 struct GateParams {
-  double range = 0.0;      // only cones nearer to the car than this [m], > 0
-  double min_mass = 0.0;   // of each side, > 0
-  double min_width = 0.0;  // between the sides' means [m], > 0
-  double max_width = 0.0;  // [m], > min_width
+  double range = 0.0;          // only cones nearer to the car than this [m], > 0
+  double min_mass = 0.0;       // of each side, > 0
+  double min_cone_mass = 0.0;  // a cone of less mass is another one, > 0
+  double min_width = 0.0;      // between the sides' means [m], > 0
+  double max_width = 0.0;      // [m], > min_width
 };
 
 /// Throws std::invalid_argument for parameters out of their bounds.

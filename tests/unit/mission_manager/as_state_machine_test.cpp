@@ -51,8 +51,8 @@ TEST(AsStateMachine, FollowsTheTruthTableOfTheRules) {
   using enum AsState;
   const std::vector<Case> cases{
       {"nothing", [](AsInput&) {}, kReady, kReady, kDriving, kFinished, kFinished},
-      {"no mission", [](AsInput& i) { i.mission_problem = std::string("none"); }, kOff, kOff, kOff, kFinished,
-       kFinished},
+      {"no mission", [](AsInput& i) { i.mission_problem = std::string("none"); }, kOff, kOff, kOff,
+       kFinished, kFinished},
       {"master switch off", [](AsInput& i) { i.master_switch_on = false; }, kOff, kOff, kOff,
        kFinished, kFinished},
       {"brakes not ok", [](AsInput& i) { i.brakes_ok = false; }, kOff, kOff, kOff, kFinished,
@@ -61,8 +61,8 @@ TEST(AsStateMachine, FollowsTheTruthTableOfTheRules) {
        kFinished, kFinished},
       {"brakes not engaged", [](AsInput& i) { i.brakes_engaged = false; }, kOff, kOff, kDriving,
        kFinished, kFinished},
-      {"software not ready", [](AsInput& i) { i.system_problem = std::string("late"); }, kOff, kOff, kDriving,
-       kFinished, kFinished},
+      {"software not ready", [](AsInput& i) { i.system_problem = std::string("late"); }, kOff, kOff,
+       kDriving, kFinished, kFinished},
       {"EBS activated", [](AsInput& i) { i.ebs_activated = true; }, kEmergency, kEmergency,
        kEmergency, kFinished, kFinished},
       {"circuit open", [](AsInput& i) { i.shutdown_circuit_closed = false; }, kOff, kEmergency,

@@ -207,6 +207,17 @@ TEST(FindGate, NeedsEnoughMassOnBothSidesNearTheCarAtTheWidthOfATrack) {
   EXPECT_FALSE(FindGate({{{3.0, 5.0}, 0.8}, {{3.0, -5.0}, 0.8}}, Pose2{}, params)) << "too wide";
 }
 
+TEST(FindGate, IsNotMovedByConesThatAreHardlyOrange) {
+  std::vector<GateCone> cones{{{6.0, 1.5}, 0.8}, {{6.0, -1.5}, 0.8}};
+  for (const double x : {-8.0, -3.0, 2.0, 9.0}) {
+    cones.push_back({{x, 1.6}, 0.25});
+    cones.push_back({{x, -1.6}, 0.1});
+  }
+  const auto gate = FindGate(cones, Pose2{}, ShippedParams().gate);
+  ASSERT_TRUE(gate);
+  EXPECT_NEAR(gate->centre.x(), 6.0, 1e-9);
+}
+
 TEST(FindGate, TurnsWithTheWorld) {
   const std::vector<GateCone> cones{
       {{5.7, 1.6}, 0.9}, {{6.3, 1.5}, 0.6}, {{5.9, -1.4}, 0.8}, {{6.2, -1.7}, 0.9}};
@@ -229,6 +240,7 @@ TEST(LapCounter, RefusesWrongParameters) {
   };
   wrong([](auto& p) { p.gate.range = 0.0; });
   wrong([](auto& p) { p.gate.min_mass = 0.0; });
+  wrong([](auto& p) { p.gate.min_cone_mass = 0.0; });
   wrong([](auto& p) { p.gate.min_width = 0.0; });
   wrong([](auto& p) { p.gate.max_width = p.gate.min_width; });
   wrong([](auto& p) { p.min_lap_length = 0.0; });
