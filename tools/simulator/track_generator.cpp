@@ -16,17 +16,15 @@ namespace {
 // The rules' bounds, and margins to them.
 constexpr double kMinLap = 200.0;
 constexpr double kMaxLap = 500.0;
-constexpr double kMinRadius =
-    4.5;  // m of the centre line; hairpins are then 12.4 m across outside, the rules ask 9
-constexpr double kMaxRadius = 21.0;  // 46 m across outside, the rules allow 50
+constexpr double kMinRadius = 4.5;   // m of the centre line, before scaling
+constexpr double kMaxRadius = 21.0;  // 46 m across outside; the rules allow 50
 constexpr double kMinTrackWidth = 3.4;
 constexpr double kMaxTrackWidth = 4.2;
 constexpr double kBehindStart = 3.0;  // m of straight behind the waiting car
 constexpr double kStartToLine = 6.0;  // m
 constexpr double kPastLine = 9.0;     // m of straight
 constexpr double kStartStraight = kBehindStart + kStartToLine + kPastLine;
-constexpr double kGateHalf =
-    1.25;  // m from the line to the large orange cones on either side of it
+constexpr double kGateHalf = 1.25;  // m from the line to its large orange cones
 constexpr int kMaxTries = 500;
 constexpr int kMaxClutter = 200;
 
@@ -46,10 +44,8 @@ void CheckOptions(const GeneratorOptions& options) {
 }
 
 TrackOutline OutlineFor(double length, TrackRandom& random) {
-  constexpr double kClearance =
-      8.5;  // m between the centre lines of neighbouring stretches, at least
-  constexpr double kShortening =
-      0.9;  // of a grid's boundary by shifting and rounding its corners, about
+  constexpr double kClearance = 8.5;   // m between centre lines of neighbouring stretches
+  constexpr double kShortening = 0.9;  // of a boundary by shifting and rounding its corners
   OutlineParams params;
   params.min_spacing = random.Uniform(10.5, 13.0);
   params.max_spacing = random.Uniform(15.0, 24.0);
@@ -176,9 +172,9 @@ void ScatterClutter(Track& track, int count, TrackRandom& random) {
     if (tries == kTriesEach * count) throw std::runtime_error("no room for so much clutter");
     const Polyline& side = random.Chance(0.5) ? left : right;
     const Eigen::Vector2d& foot = side[random.Index(side.size())];
-    const Eigen::Vector2d thing =
-        RoundToMillimetre(Eigen::Vector2d(foot.x() + random.Uniform(-kFarthest, kFarthest),
-                                          foot.y() + random.Uniform(-kFarthest, kFarthest)));
+    const double dx = random.Uniform(-kFarthest, kFarthest);
+    const double dy = random.Uniform(-kFarthest, kFarthest);
+    const Eigen::Vector2d thing = RoundToMillimetre(foot + Eigen::Vector2d(dx, dy));
     const double to_track =
         std::min(Nearest(left, true, thing).distance, Nearest(right, true, thing).distance);
     if (IsOnTrack(track, thing) || to_track < kNearest || to_track > kFarthest) continue;
