@@ -59,7 +59,6 @@ PathTracker::PathTracker(const PathTrackerParams& params)
       history_(params.gate.max_path_age + PoseHistory::kMaxExtrapolation) {
   Check(params);
   // Refuses wrong parameters of the parts that are made anew for each path.
-  LeastBending({}, 0.0, params.corridor);
   const ReferencePath path({{0.0, 0.0}, {1.0, 0.0}}, params.path);
   SpeedProfile(path.curvature(), path.spacing(), path.length(), params.speed);
   last_.brake = params.control.hold_brake;
@@ -73,15 +72,15 @@ std::string PathTracker::TakePath(const PathInput& input) {
   const std::optional<Pose2> T_own_base = history_.At(input.utime);
   if (!T_own_base) return "its time is outside the pose history";
   const Pose2 T_own_local = *T_own_base * input.T_local_base.Inverse();
-  const std::vector<Eigen::Vector2d> line = LeastBending({input.points, input.left, input.right},
-                                                         input.T_local_base.yaw, params_.corridor);
   std::vector<Eigen::Vector2d> points;
-  points.reserve(line.size() + 1);
+  points.reserve(input.points.size() + 1);
   // A path that begins ahead is joined to the car.
   const Eigen::Vector2d base = T_own_base->position();
-  if (!line.empty() && (T_own_local * line[0] - base).norm() > params_.path.spacing)
+  if (!input.points.empty() &&
+      (T_own_local * input.points[0] - base).norm() > params_.path.spacing) {
     points.push_back(base);
-  for (const Eigen::Vector2d& point : line) points.push_back(T_own_local * point);
+  }
+  for (const Eigen::Vector2d& point : input.points) points.push_back(T_own_local * point);
   try {
     ReferencePath path(points, params_.path);
     const double seen = SeenLength(path, input, T_own_local);

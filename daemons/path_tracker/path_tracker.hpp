@@ -10,7 +10,6 @@
 #include "common/car.hpp"
 #include "common/geometry.hpp"
 #include "common/pose_history.hpp"
-#include "daemons/path_tracker/corridor.hpp"
 #include "daemons/path_tracker/drive_gate.hpp"
 #include "daemons/path_tracker/reference_path.hpp"
 #include "daemons/path_tracker/speed_profile.hpp"
@@ -40,7 +39,6 @@ struct CommandRates {
 
 struct PathTrackerParams {
   Car car;
-  CorridorParams corridor;
   ReferencePathParams path;
   SpeedProfileParams speed;
   SteeringParams steering;
@@ -57,12 +55,9 @@ struct PathTrackerParams {
 struct PathInput {
   int64_t utime = 0;
   Pose2 T_local_base;                   // at utime
-  std::vector<Eigen::Vector2d> points;  // middle of the track, local [m], from the car outward
-  std::vector<Eigen::Vector2d>
-      left;  // cones of the sides, local [m], in driving order; may be empty
-  std::vector<Eigen::Vector2d> right;
-  size_t num_seen = 0;       // so many points from the first on are supported by cones
-  double seen_length = 0.0;  // from the car [m]
+  std::vector<Eigen::Vector2d> points;  // local [m], from the car outward
+  size_t num_seen = 0;                  // so many points from the first on are supported by cones
+  double seen_length = 0.0;             // from the car [m]
 };
 
 /// What the actuators are to do; fields as in drive_command_t.
@@ -77,9 +72,9 @@ struct TrackerCommand {
   double lateral_error = 0.0;
 };
 
-/// Steers the car along the track and chooses its speed. For each path: line of least bending
-/// between the sides, smooth curve and speed profile; for each velocity: dead reckoning, place on
-/// the path now and after the actuators' delay, command.
+/// Steers the car along the middle path and chooses its speed. For each path: smooth curve and
+/// speed profile; for each velocity: dead reckoning, place on the path now and after the actuators'
+/// delay, command.
 ///
 /// Speed obeys v <= sqrt(2 a (L - v t)) over the seen length L [FAULTS 36]. The reaction time t
 /// runs from the path's own time: while the path's age is below t, the place where the profile is

@@ -17,8 +17,6 @@ constexpr double kMaxYawRate = 15.0;      // rad/s
 std::string ProblemOf(const track_t& message) {
   if (message.num_points < 2) return "a valid path has at least two points";
   if (message.num_points > kMaxPathPoints) return "too many points";
-  if (message.num_left > kMaxPathPoints || message.num_right > kMaxPathPoints)
-    return "too many cones";
   for (const path_point_t& point : message.path) {
     if (std::hypot(point.x_m - message.x_m, point.y_m - message.y_m) > kMaxPathExtent) {
       return "a point is too far from the car";
@@ -52,8 +50,6 @@ PathInput ToPathInput(const track_t& message) {
     seen = seen && point.extrapolated == 0;
     if (seen) ++input.num_seen;
   }
-  for (const boundary_point_t& cone : message.left) input.left.emplace_back(cone.x_m, cone.y_m);
-  for (const boundary_point_t& cone : message.right) input.right.emplace_back(cone.x_m, cone.y_m);
   return input;
 }
 
@@ -147,10 +143,6 @@ PathTrackerParams LoadPathTrackerParams(const Config& config) {
   PathTrackerParams params;
   params.car = LoadCar(config);
   params.path.spacing = config.Number("path_spacing_m", {0.05, 2.0});
-  params.corridor.spacing = params.path.spacing;
-  params.corridor.margin = config.Number("boundary_margin_m", {0.5, 3.0});
-  params.corridor.max_offset = config.Number("max_offset_m", {0.0, 3.0});
-  params.corridor.centring_length = config.Number("centring_length_m", {0.5, 50.0});
   params.path.smoothing_length = config.Number("path_smoothing_length_m", {0.0, 5.0});
   params.path.max_length = config.Number("max_path_length_m", {3.0, 200.0});
   LoadSpeed(config, params);

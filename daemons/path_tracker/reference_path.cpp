@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "common/geometry.hpp"
-#include "daemons/path_tracker/polyline.hpp"
 
 namespace hairpin {
 namespace {
@@ -22,6 +21,32 @@ void Check(const ReferencePathParams& params) {
   if (!(params.max_length > params.spacing)) {
     throw std::invalid_argument("ReferencePath: max_length_m must be > spacing_m");
   }
+}
+
+double PolylineLength(const Points& points) {
+  double length = 0.0;
+  for (size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  return length;
+}
+
+// `count` points evenly spaced over the first `length` metres of the polyline.
+Points Resample(const Points& points, double length, size_t count) {
+  Points samples;
+  samples.reserve(count);
+  size_t segment = 1;
+  double before = 0.0;  // length of the polyline up to the segment
+  for (size_t i = 0; i < count; ++i) {
+    const double s = length * static_cast<double>(i) / static_cast<double>(count - 1);
+    double step = (points[segment] - points[segment - 1]).norm();
+    while (before + step < s && segment + 1 < points.size()) {
+      before += step;
+      ++segment;
+      step = (points[segment] - points[segment - 1]).norm();
+    }
+    const double t = step > 0.0 ? std::min((s - before) / step, 1.0) : 1.0;
+    samples.push_back(points[segment - 1] + t * (points[segment] - points[segment - 1]));
+  }
+  return samples;
 }
 
 // Solves (I + lambda D^T D) q = p with D the third difference: seven bands, by L D L^T without
