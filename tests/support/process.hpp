@@ -2,7 +2,7 @@
 
 #include <poll.h>
 #include <signal.h>
-#include <sys/pidfd.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -39,7 +39,8 @@ class Process {
       _exit(127);
     }
     close(ends[1]);
-    descriptor_ = pidfd_open(pid_, 0);
+    descriptor_ =
+        static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));  // glibc 2.36 declares it for C only
     if (descriptor_ < 0) throw std::runtime_error("no process descriptor");
   }
   ~Process() {
