@@ -16,6 +16,8 @@ constexpr int kWindow = 64;  // messages that may arrive out of order
 // then a replay has begun anew, or the machine has slept.
 constexpr double kMaxJump = 10.0;  // s
 constexpr int kMessagesToInsist = 20;
+// 2100-01-01. No clock of a car shows more, and far beyond it arithmetic on times would overflow.
+constexpr int64_t kMaxUtime = 4'102'444'800'000'000;
 
 }  // namespace
 
@@ -52,7 +54,7 @@ bool Bus::Accept(Subscription& subscription, int64_t utime, int64_t boot_id, int
 }
 
 bool Bus::IsPlausible(Subscription& subscription, int64_t utime) {
-  if (utime < 0) return false;
+  if (utime < 0 || utime > kMaxUtime) return false;
   // 0 is a heartbeat that has heard nothing yet; far in the past is merely late, and the node's to
   // judge.
   if (newest_utime_ == 0 || utime == 0 || SecondsBetween(newest_utime_, utime) <= kMaxJump) {
@@ -77,13 +79,20 @@ bool Bus::IsDuplicate(Subscription& subscription, int64_t boot_id, int64_t seque
     return false;
   }
   const int64_t ahead = sequence - sender->highest;
+  if (ahead > -kWindow) sender->too_old_in_a_row = 0;
   if (ahead > 0) {
     sender->seen = ahead < kWindow ? sender->seen << ahead | 1u : 1u;
     sender->highest = sequence;
     subscription.health.missing += ahead - 1;
     return false;
   }
-  if (ahead <= -kWindow) return true;  // too old to tell: as good as a duplicate
+  if (ahead <= -kWindow) {
+    // Too old to tell: as good as a duplicate. Unless the sender insists: then one corrupt sequence
+    // made all others look old, and would silence it for ever.
+    if (++sender->too_old_in_a_row <= kMessagesToInsist) return true;
+    *sender = {boot_id, sequence, 1};
+    return false;
+  }
   const uint64_t bit = uint64_t{1} << -ahead;
   if ((sender->seen & bit) != 0) return true;
   sender->seen |= bit;

@@ -62,6 +62,7 @@ class Bus {
     int64_t boot_id;
     int64_t highest;
     uint64_t seen;  // bit i: highest - i was received
+    int too_old_in_a_row = 0;
   };
   struct Subscription {
     channel_health_t health{};

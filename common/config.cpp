@@ -56,7 +56,9 @@ double Within(const Range& range) {
 
 YAML::Node Parse(const std::string& text, const std::string& file) {
   try {
-    return YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) throw ConfigError(file + ": more than one YAML document");
+    return documents.empty() ? YAML::Node() : documents.front();
   } catch (const YAML::Exception& error) {
     throw ConfigError(file + ":" + std::to_string(error.mark.line + 1) + ": no YAML: " + error.msg);
   }
@@ -72,7 +74,8 @@ std::string ReadFile(const std::string& file) {
 
 void Override(const YAML::Node& root, const std::string& assignment) {
   const size_t equals = assignment.find('=');
-  if (equals == std::string::npos) throw ConfigError("--set " + assignment + ": is not key=value");
+  if (equals == std::string::npos || equals == 0)
+    throw ConfigError("--set " + assignment + ": is not key=value");
   std::istringstream keys(assignment.substr(0, equals));
   YAML::Node node = root;
   for (std::string key; std::getline(keys, key, '.');) {
@@ -115,8 +118,12 @@ std::shared_ptr<Config::Level> Config::Document::AddLevel(const YAML::Node& node
   level->line = node.Mark().line + 1;
   levels.push_back(level);
   for (const auto& entry : node) {
-    const std::string key = entry.first.as<std::string>();
     const int line = entry.first.Mark().line + 1;
+    if (!entry.first.IsScalar()) {
+      Report(*level, line, path + Describe(entry.first) + " is no key");
+      continue;
+    }
+    const std::string key = entry.first.Scalar();
     if (!level->values.emplace(key, std::pair(entry.second, line)).second) {
       Report(*level, line, path + key + ": stands twice");
     }
@@ -274,9 +281,11 @@ Config Config::Section(const std::string& key) const {
   YAML::Node node = Find(*document_, *level_, key, &line);
   if (node.IsDefined() && !node.IsMap()) {
     document_->Report(*level_, line, level_->path + key + ": " + Describe(node) + " is no section");
-    node.reset(YAML::Node(YAML::NodeType::Map));
   }
-  return Config(document_, document_->AddLevel(node, level_->file, level_->path + key + "."));
+  if (!node.IsMap()) node.reset(YAML::Node(YAML::NodeType::Map));
+  const auto level = document_->AddLevel(node, level_->file, level_->path + key + ".");
+  level->line = line;
+  return Config(document_, level);
 }
 
 void Config::Finish() const {

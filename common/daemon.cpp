@@ -60,16 +60,20 @@ void Work(const std::string& name, const Options& options, const NodeFactory& fa
   const std::unique_ptr<HostedNode> node = factory(bus, config);
   sd_notify(0, "READY=1");
   const MonotonicClock clock;
-  int64_t last_heard = clock.NowMicros();
+  int64_t last_beat = clock.NowMicros();
+  int64_t last_utime = 0;
   while (stop_requested == 0) {
-    const bool heard = transport.Handle(node->has_poll() ? kPollPeriodMs : kIdlePeriodMs);
+    transport.Handle(node->has_poll() ? kPollPeriodMs : kIdlePeriodMs);
     node->Poll();
     sd_notify(0, "WATCHDOG=1");
+    // Heartbeats follow data time. Where that stands still, even if others' heartbeats are heard,
+    // they follow the wall.
     const int64_t now = clock.NowMicros();
-    if (heard || SecondsBetween(last_heard, now) >= kHeartbeatPeriod) {
-      if (!heard) heartbeat.Send();
-      last_heard = now;
-    }
+    const bool stands_still = bus.newest_utime() == last_utime;
+    if (stands_still && SecondsBetween(last_beat, now) < kHeartbeatPeriod) continue;
+    if (stands_still) heartbeat.Send();
+    last_utime = bus.newest_utime();
+    last_beat = now;
   }
   sd_notify(0, "STOPPING=1");
 }
