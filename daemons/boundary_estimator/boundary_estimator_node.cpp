@@ -133,6 +133,7 @@ OneSidedParams LoadOneSidedParams(const Config& config, double min_spacing) {
 MiddlePathParams LoadPathParams(const Config& config) {
   MiddlePathParams params;
   params.point_spacing = config.Number("point_spacing_m", {0.1, 5.0});
+  params.join_length = config.Number("join_length_m", {0.0, 10.0});
   params.smoothing_passes = config.Integer("smoothing_passes", 0, 100);
   params.max_length = config.Number("max_length_m", {5.0, 100.0});
   params.extrapolation = config.Number("extrapolation_m", {0.0, 50.0});

@@ -95,6 +95,7 @@ void Check(const MiddlePathParams& params) {
     if (!holds) throw std::invalid_argument(std::string("MiddlePathParams: ") + what);
   };
   require(params.point_spacing > 0.0, "point_spacing must be > 0");
+  require(params.join_length >= 0.0, "join_length must be >= 0");
   require(params.smoothing_passes >= 0, "smoothing_passes must be >= 0");
   require(params.max_length > params.point_spacing, "max_length must be > point_spacing");
   require(params.extrapolation >= 0.0, "extrapolation must be >= 0");
@@ -108,10 +109,16 @@ MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const Stretch& stretch,
   MiddlePath path;
   if (stretch.empty()) return path;
   const std::vector<Gate>& gates = stretch.gates;
-  const double first_width = gates.size() > 1 ? WidthBetween(gates[0], gates[1]) : gates[0].width();
+  // A gate beside the car that does not stand square would send the path off sideways.
+  size_t first = 0;
+  while (first + 1 < gates.size() && (gates[first].middle() - start).norm() < params.join_length) {
+    ++first;
+  }
+  const double first_width = first + 1 < gates.size() ? WidthBetween(gates[first], gates[first + 1])
+                                                      : gates[first].width();
   std::vector<PathPoint> corners{{start, first_width, false},
-                                 {gates[0].middle(), first_width, false}};
-  for (size_t i = 1; i < gates.size(); ++i) {
+                                 {gates[first].middle(), first_width, false}};
+  for (size_t i = first + 1; i < gates.size(); ++i) {
     corners.push_back({gates[i].middle(), WidthBetween(gates[i - 1], gates[i]), false});
   }
   path.points = Resample(corners, params.point_spacing);

@@ -9,8 +9,9 @@ namespace hairpin {
 
 struct MiddlePathParams {
   double point_spacing = 0.0;  // m, along the path
-  int smoothing_passes = 0;    // of a (1, 2, 1) / 4 filter over the points
-  double max_length = 0.0;     // m
+  double join_length = 0.0;  // m: gates nearer to the car than this are driven through as they come
+  int smoothing_passes = 0;  // of a (1, 2, 1) / 4 filter over the points
+  double max_length = 0.0;   // m
   double extrapolation =
       0.0;  // m, past the last gate with cones on both sides; cones of one side count into it
   double curvature_window = 0.0;            // m of path whose bend the extrapolation goes on with
