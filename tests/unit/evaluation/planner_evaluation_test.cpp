@@ -77,6 +77,13 @@ TEST(RecordedRun, IsReadAsItStands) {
   }
 }
 
+TEST(RecordedRun, MayLackTheSpeed) {
+  json run = StraightRun();
+  run[0].erase("car_speed");
+  const Recording file(run.dump());
+  EXPECT_FALSE(LoadRecordedRun(file.path())[0].speed);
+}
+
 TEST(RecordedRun, IsRefusedWithFileFrameAndReason) {
   const auto problem = [](const std::string& text) {
     const Recording file(text);
@@ -93,8 +100,11 @@ TEST(RecordedRun, IsRefusedWithFileFrameAndReason) {
   EXPECT_THAT(problem("[]"), testing::HasSubstr("no list of frames"));
   EXPECT_EQ(problem("[1]"), "frame 0: is no object");
   json run = StraightRun();
-  run[3].erase("car_speed");
-  EXPECT_EQ(problem(run.dump()), "frame 3: car_speed: is missing");
+  run[3].erase("car_direction");
+  EXPECT_EQ(problem(run.dump()), "frame 3: car_direction: is missing");
+  run = StraightRun();
+  run[3]["car_speed"] = "fast";
+  EXPECT_EQ(problem(run.dump()), "frame 3: car_speed: is no finite number");
   run = StraightRun();
   run[2]["car_position"] = {1.0};
   EXPECT_EQ(problem(run.dump()), "frame 2: car_position: must be [x, y]");
