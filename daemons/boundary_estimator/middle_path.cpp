@@ -49,12 +49,12 @@ void Smooth(std::vector<PathPoint>& points, int passes) {
 double EndCurvature(const std::vector<PathPoint>& points, double window) {
   const Eigen::Vector2d last = points.back().position - points[points.size() - 2].position;
   double turned = 0.0;
-  double length = 0.5 * last.norm();
+  double length = 0.0;
   Eigen::Vector2d after = last;
   for (size_t i = points.size() - 2; i > 0 && length < window; --i) {
     const Eigen::Vector2d before = points[i].position - points[i - 1].position;
     turned += std::atan2(Cross(before, after), before.dot(after));
-    length += before.norm();
+    length += 0.5 * (before.norm() + after.norm());
     after = before;
   }
   return length > 0.0 ? turned / length : 0.0;

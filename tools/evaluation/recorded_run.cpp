@@ -58,7 +58,7 @@ RecordedFrame ReadFrame(const json& value) {
   const Eigen::Vector2d direction = ReadPoint(Field(value, "car_direction"), "car_direction");
   if (direction.isZero()) throw RecordingError("car_direction: is zero");
   frame.T_map_base = {position.x(), position.y(), std::atan2(direction.y(), direction.x())};
-  frame.speed = ReadNumber(Field(value, "car_speed"), "car_speed");
+  if (value.contains("car_speed")) frame.speed = ReadNumber(value["car_speed"], "car_speed");
   frame.cones = ReadCones(Field(value, "slam_cones"));
   return frame;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,8 +19,8 @@ class RecordingError : public std::runtime_error {
 /// One moment of a recorded run, all in its map frame.
 struct RecordedFrame {
   Pose2 T_map_base;
-  double speed = 0.0;          // m/s
-  std::vector<MapCone> cones;  // the map as it was known then
+  std::optional<double> speed;  // m/s, where recorded
+  std::vector<MapCone> cones;   // the map as it was known then
 };
 
 /// Reads a JSON list of frames {car_position: [x, y], car_direction: [dx, dy], car_speed,

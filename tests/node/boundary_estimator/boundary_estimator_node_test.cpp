@@ -38,7 +38,8 @@ local_map_t Lane(int64_t utime) {
 class BoundaryEstimatorNodeTest : public testing::Test {
  protected:
   BoundaryEstimatorNodeTest() {
-    tester_.Subscribe(channels::kTrack, [this](const track_t& message) { tracks_.push_back(message); });
+    tester_.Subscribe(channels::kTrack,
+                      [this](const track_t& message) { tracks_.push_back(message); });
   }
 
   void Send(const local_map_t& map) {
@@ -52,7 +53,8 @@ class BoundaryEstimatorNodeTest : public testing::Test {
   Bus bus_{transport_, "boundary_estimator", 1};
   Bus tester_{transport_, "tester", 2};
   BoundaryEstimatorNode node_{
-      LoadBoundaryEstimatorParams(Config::Load(HAIRPIN_SOURCE_DIR "/config", "boundary_estimator")), bus_};
+      LoadBoundaryEstimatorParams(Config::Load(HAIRPIN_SOURCE_DIR "/config", "boundary_estimator")),
+      bus_};
   std::vector<track_t> tracks_;
 };
 
@@ -149,8 +151,11 @@ TEST_F(BoundaryEstimatorNodeTest, SendsTheSameBytesForTheSameMaps) {
   std::vector<track_t> other_tracks;
   Transport transport("memq://");
   Bus bus(transport, "boundary_estimator", 1), tester(transport, "tester", 2);
-  BoundaryEstimatorNode node(LoadBoundaryEstimatorParams(Config::Load(HAIRPIN_SOURCE_DIR "/config", "boundary_estimator")), bus);
-  tester.Subscribe(channels::kTrack, [&](const track_t& message) { other_tracks.push_back(message); });
+  BoundaryEstimatorNode node(
+      LoadBoundaryEstimatorParams(Config::Load(HAIRPIN_SOURCE_DIR "/config", "boundary_estimator")),
+      bus);
+  tester.Subscribe(channels::kTrack,
+                   [&](const track_t& message) { other_tracks.push_back(message); });
   for (int i = 0; i < 5; ++i) {
     local_map_t map = Lane(kStart + 100'000 * i);
     map.x_m += 0.7 * i;
@@ -171,7 +176,8 @@ TEST_F(BoundaryEstimatorNodeTest, SendsTheSameBytesForTheSameMaps) {
 
 TEST(BoundaryEstimatorConfig, RefusesWhatItDoesNotKnow) {
   const auto load = [](const std::vector<std::string>& overrides) {
-    return LoadBoundaryEstimatorParams(Config::Load(HAIRPIN_SOURCE_DIR "/config", "boundary_estimator", overrides));
+    return LoadBoundaryEstimatorParams(
+        Config::Load(HAIRPIN_SOURCE_DIR "/config", "boundary_estimator", overrides));
   };
   EXPECT_NO_THROW(load({}));
   EXPECT_THROW(load({"search.beam_width=0"}), ConfigError);

@@ -7,7 +7,9 @@
 namespace hairpin {
 namespace {
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 TEST(Triangulate, GivesNothingForPointsOnALine) {
   EXPECT_TRUE(Triangulate({}).triangles.empty());
@@ -39,14 +41,18 @@ TEST(Triangulate, HasEmptyCircumcirclesAndMutualNeighbours) {
         const Eigen::Vector2d d = corner(static_cast<size_t>(i)) - point;
         in_circle.row(i) << d.x(), d.y(), d.squaredNorm();
       }
-      const double det = in_circle(0, 0) * (in_circle(1, 1) * in_circle(2, 2) - in_circle(1, 2) * in_circle(2, 1)) -
-                         in_circle(0, 1) * (in_circle(1, 0) * in_circle(2, 2) - in_circle(1, 2) * in_circle(2, 0)) +
-                         in_circle(0, 2) * (in_circle(1, 0) * in_circle(2, 1) - in_circle(1, 1) * in_circle(2, 0));
+      const double det =
+          in_circle(0, 0) *
+              (in_circle(1, 1) * in_circle(2, 2) - in_circle(1, 2) * in_circle(2, 1)) -
+          in_circle(0, 1) *
+              (in_circle(1, 0) * in_circle(2, 2) - in_circle(1, 2) * in_circle(2, 0)) +
+          in_circle(0, 2) * (in_circle(1, 0) * in_circle(2, 1) - in_circle(1, 1) * in_circle(2, 0));
       EXPECT_LE(det, 1e-6);
     }
     for (const int other : neighbour) {
       if (other == Triangulation::kOutside) continue;
-      EXPECT_THAT(result.triangles[static_cast<size_t>(other)].neighbour, testing::Contains(static_cast<int>(t)));
+      EXPECT_THAT(result.triangles[static_cast<size_t>(other)].neighbour,
+                  testing::Contains(static_cast<int>(t)));
     }
   }
 }

@@ -23,7 +23,8 @@ TEST(SideLogRatios, FollowTheColourOfTheSide) {
 }
 
 TEST(SideLogRatios, AreNothingForOrangeAndUnknownOnEitherSide) {
-  for (const ConeColour colour : {ConeColour::kUnknown, ConeColour::kOrange, ConeColour::kOrangeLarge}) {
+  for (const ConeColour colour :
+       {ConeColour::kUnknown, ConeColour::kOrange, ConeColour::kOrangeLarge}) {
     const SideLogRatios ratios = ToSideLogRatios(Certain(colour), 0.01);
     EXPECT_EQ(ratios.left, 0.0);
     EXPECT_EQ(ratios.right, 0.0);
@@ -46,8 +47,9 @@ TEST(PathFeatures, OfAHandMadePathAreItsClosedForm) {
   features.AddWidth(3.0);
   features.AddWidth(3.0);
   features.AddWidth(6.0);
-  EXPECT_THAT(features.values(), testing::ElementsAre(testing::DoubleNear(std::numbers::pi / 2.0, 1e-12), 1.0, 0.0,
-                                                      testing::DoubleNear(std::sqrt(2.0), 1e-12), 2.0, 5.0));
+  EXPECT_THAT(features.values(),
+              testing::ElementsAre(testing::DoubleNear(std::numbers::pi / 2.0, 1e-12), 1.0, 0.0,
+                                   testing::DoubleNear(std::sqrt(2.0), 1e-12), 2.0, 5.0));
 }
 
 TEST(PathFeatures, DoNotTurnOnPartsShorterThanASegment) {
@@ -64,8 +66,9 @@ TEST(PathScore, IsWeightedPriorPlusLikelihood) {
   params.setpoint = {0.0, 0.0, 0.0, 0.0, 10.0, 20.0};
   params.normaliser = {1.0, 2.0, 4.0, 0.5, 100.0, 400.0};
   const PathScore score = Score({1.0, 2.0, 2.0, 1.0, 5.0, 30.0}, -3.0, params);
-  EXPECT_THAT(score.term, testing::ElementsAre(testing::DoubleEq(0.1), testing::DoubleEq(0.4), testing::DoubleEq(0.3),
-                                               testing::DoubleEq(0.8), testing::DoubleEq(0.125), 0.0));
+  EXPECT_THAT(score.term, testing::ElementsAre(testing::DoubleEq(0.1), testing::DoubleEq(0.4),
+                                               testing::DoubleEq(0.3), testing::DoubleEq(0.8),
+                                               testing::DoubleEq(0.125), 0.0));
   EXPECT_DOUBLE_EQ(score.log_prior, -17.25);
   EXPECT_DOUBLE_EQ(score.log_posterior(), -20.25);
 }

@@ -33,14 +33,16 @@ Scene RandomScene(unsigned seed, int pairs) {
 
 double Deviation(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  const double mean =
+      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   double squares = 0.0;
   for (const double value : values) squares += (value - mean) * (value - mean);
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
 // The score of a path from its definition, all cones in the product, nothing incremental.
-double NaiveLogPosterior(const Scene& scene, const std::vector<CrossedEdge>& edges, const PathScoreParams& params) {
+double NaiveLogPosterior(const Scene& scene, const std::vector<CrossedEdge>& edges,
+                         const PathScoreParams& params) {
   const auto at = [&](int i) { return scene.positions[static_cast<size_t>(i)]; };
   std::vector<double> left, right, width;
   Eigen::Vector2d end(0.0, 0.0), anchor(0.0, 0.0);
@@ -58,7 +60,8 @@ double NaiveLogPosterior(const Scene& scene, const std::vector<CrossedEdge>& edg
     if (i == 0) continue;
     const CrossedEdge before = edges[i - 1];
     const bool on_left = edges[i].left != before.left;
-    const Eigen::Vector2d from = at(on_left ? before.left : before.right), to = at(on_left ? edges[i].left : edges[i].right);
+    const Eigen::Vector2d from = at(on_left ? before.left : before.right),
+                          to = at(on_left ? edges[i].left : edges[i].right);
     const double spacing = (to - from).norm();
     if (spacing >= params.min_spacing) (on_left ? left : right).push_back(spacing);
     width.push_back(DistanceToSegment(at(on_left ? edges[i].right : edges[i].left), from, to));
@@ -71,8 +74,12 @@ double NaiveLogPosterior(const Scene& scene, const std::vector<CrossedEdge>& edg
   double log_likelihood = 0.0;
   for (const int cone : lefts) log_likelihood += scene.ratios[static_cast<size_t>(cone)].left;
   for (const int cone : rights) log_likelihood += scene.ratios[static_cast<size_t>(cone)].right;
-  const FeatureValues features{largest, Deviation(left), Deviation(right), Deviation(width),
-                               static_cast<double>(edges.size()), length};
+  const FeatureValues features{largest,
+                               Deviation(left),
+                               Deviation(right),
+                               Deviation(width),
+                               static_cast<double>(edges.size()),
+                               length};
   return Score(features, log_likelihood, params).log_posterior();
 }
 
@@ -92,7 +99,8 @@ TEST(PathSearch, ScoresAsTheNaiveComputationDoes) {
     const PathSearchResult result = search.Search(scene, Triangulate(scene.positions));
     ASSERT_TRUE(result.winner && result.runner_up) << seed;
     for (const ScoredPath* path : {&*result.winner, &*result.runner_up}) {
-      EXPECT_NEAR(path->score.log_posterior(), NaiveLogPosterior(scene, path->edges, score), 1e-9) << seed;
+      EXPECT_NEAR(path->score.log_posterior(), NaiveLogPosterior(scene, path->edges, score), 1e-9)
+          << seed;
     }
     EXPECT_GE(result.winner->score.log_posterior(), result.runner_up->score.log_posterior());
   }
@@ -101,15 +109,16 @@ TEST(PathSearch, ScoresAsTheNaiveComputationDoes) {
 // Every path there is, by plain recursion over the triangles.
 class Enumeration {
  public:
-  Enumeration(const Scene& scene, const Triangulation& triangulation, const PathSearchParams& params,
-              const PathScoreParams& score)
+  Enumeration(const Scene& scene, const Triangulation& triangulation,
+              const PathSearchParams& params, const PathScoreParams& score)
       : scene_(scene), triangulation_(triangulation), params_(params), score_(score) {}
 
   void From(std::vector<CrossedEdge> path, std::set<int> cones, std::set<int> triangles, int next) {
     ++count;
     best = std::max(best, NaiveLogPosterior(scene_, path, score_));
     if (next == Triangulation::kOutside || !triangles.insert(next).second) return;
-    if (static_cast<int>(path.size()) >= params_.max_edges || Length(path) > params_.horizon) return;
+    if (static_cast<int>(path.size()) >= params_.max_edges || Length(path) > params_.horizon)
+      return;
     const auto [vertex, neighbour] = triangulation_.triangles[static_cast<size_t>(next)];
     const CrossedEdge edge = path.back();
     for (size_t i = 0; i < 3; ++i) {
@@ -118,7 +127,8 @@ class Enumeration {
       for (size_t k = 0; k < 3; ++k) {
         if (k == i) continue;
         const bool leaves_left = vertex[k] == edge.left;
-        path.push_back(leaves_left ? CrossedEdge{vertex[i], edge.right} : CrossedEdge{edge.left, vertex[i]});
+        path.push_back(leaves_left ? CrossedEdge{vertex[i], edge.right}
+                                   : CrossedEdge{edge.left, vertex[i]});
         if (Admissible(path)) From(path, cones, triangles, neighbour[k]);
         path.pop_back();
       }
@@ -129,7 +139,8 @@ class Enumeration {
     const Eigen::Vector2d across = At(path.back().left) - At(path.back().right);
     if (across.norm() < params_.min_width) return false;
     PathFeatures features({0.0, 0.0}, {1.0, 0.0});
-    for (const CrossedEdge& edge : path) features.Cross(0.5 * (At(edge.left) + At(edge.right)), score_.min_segment);
+    for (const CrossedEdge& edge : path)
+      features.Cross(0.5 * (At(edge.left) + At(edge.right)), score_.min_segment);
     return features.values()[0] <= params_.max_turn + 1e-12;
   }
 
@@ -140,7 +151,8 @@ class Enumeration {
   Eigen::Vector2d At(int i) const { return scene_.positions[static_cast<size_t>(i)]; }
   double Length(const std::vector<CrossedEdge>& path) const {
     PathFeatures features({0.0, 0.0}, {1.0, 0.0});
-    for (const CrossedEdge& edge : path) features.Cross(0.5 * (At(edge.left) + At(edge.right)), score_.min_segment);
+    for (const CrossedEdge& edge : path)
+      features.Cross(0.5 * (At(edge.left) + At(edge.right)), score_.min_segment);
     return features.length();
   }
 
@@ -203,7 +215,8 @@ TEST(PathSearch, RunnerUpNeitherBeginsNorContinuesTheWinner) {
     const PathSearchResult result = search.Search(scene, Triangulate(scene.positions));
     ASSERT_TRUE(result.winner && result.runner_up) << seed;
     const size_t common = std::min(result.winner->edges.size(), result.runner_up->edges.size());
-    EXPECT_FALSE(std::equal(result.winner->edges.begin(), result.winner->edges.begin() + static_cast<std::ptrdiff_t>(common),
+    EXPECT_FALSE(std::equal(result.winner->edges.begin(),
+                            result.winner->edges.begin() + static_cast<std::ptrdiff_t>(common),
                             result.runner_up->edges.begin()));
   }
 }

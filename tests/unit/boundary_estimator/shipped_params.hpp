@@ -6,7 +6,8 @@ namespace hairpin::test {
 
 /// What the car drives with.
 inline BoundaryEstimatorParams ShippedParams() {
-  return LoadBoundaryEstimatorParams(Config::Load(HAIRPIN_SOURCE_DIR "/config", "boundary_estimator"));
+  return LoadBoundaryEstimatorParams(
+      Config::Load(HAIRPIN_SOURCE_DIR "/config", "boundary_estimator"));
 }
 
 inline ColourDistribution Certain(ConeColour colour) {
@@ -15,6 +16,8 @@ inline ColourDistribution Certain(ConeColour colour) {
   return distribution;
 }
 
-inline MapCone Cone(int64_t id, double x, double y, ConeColour colour) { return {id, {x, y}, Certain(colour), 1.0}; }
+inline MapCone Cone(int64_t id, double x, double y, ConeColour colour) {
+  return {id, {x, y}, Certain(colour), 1.0};
+}
 
 }  // namespace hairpin::test

@@ -206,8 +206,8 @@ struct SyntheticResult {
   std::vector<std::pair<int, double>> worst;           // frame, metre
 };
 
-/// Drives once along the track, a frame each metre, up to 0.8 m beside the centreline and askew by
-/// `slide` at most [rad].
+/// Drives along the track until its end comes into view, a frame each metre, up to 0.8 m beside the
+/// centreline and askew by `slide` at most [rad].
 inline SyntheticResult DriveAlong(const SyntheticTrack& track,
                                   const BoundaryEstimatorParams& params,
                                   const SensorCharacter& character, double slide, unsigned seed) {
@@ -215,11 +215,16 @@ inline SyntheticResult DriveAlong(const SyntheticTrack& track,
   BoundaryEstimator estimator(params);
   SyntheticResult result;
   const double phase = 0.7 * seed;
+  constexpr double kViewAhead = 22.0;
+  double driven = -kViewAhead;  // up to where the track ends within view
+  for (size_t i = 1; i < track.centre.size(); ++i)
+    driven += (track.centre[i] - track.centre[i - 1]).norm();
   double next = 0.0, along = 0.0;
   int frame = 0;
   for (size_t i = 1; i < track.centre.size(); ++i) {
     const Eigen::Vector2d step = track.centre[i] - track.centre[i - 1];
     along += step.norm();
+    if (along > driven) break;
     if (along < next || step.isZero()) continue;
     next += 1.0;
     const Pose2 on_centre{track.centre[i].x(), track.centre[i].y(), std::atan2(step.y(), step.x())};
