@@ -41,6 +41,9 @@ BoundaryEstimator::BoundaryEstimator(const BoundaryEstimatorParams& params)
   };
   require(params.min_existence >= 0.0 && params.min_existence <= 1.0,
           "min_existence must be in [0, 1]");
+  require(params.near_min_existence >= params.min_existence && params.near_min_existence <= 1.0,
+          "near_min_existence must be in [min_existence, 1]");
+  require(params.near_range >= 0.0, "near_range must be >= 0");
   require(params.max_range > 0.0, "max_range must be > 0");
   require(params.max_cones >= 1 && static_cast<size_t>(params.max_cones) <= PathSearch::kMaxCones,
           "max_cones must be in [1, 128]");
@@ -54,10 +57,12 @@ Scene BoundaryEstimator::Select(const Pose2& T_base_local,
                                 const std::vector<MapCone>& cones) const {
   std::vector<MapCone> near;
   for (const MapCone& cone : cones) {
-    if (cone.existence < params_.min_existence) continue;
     MapCone in_base = cone;
     in_base.position = T_base_local * cone.position;
-    if (in_base.position.norm() <= params_.max_range) near.push_back(in_base);
+    const double range = in_base.position.norm();
+    const double needed =
+        range < params_.near_range ? params_.near_min_existence : params_.min_existence;
+    if (cone.existence >= needed && range <= params_.max_range) near.push_back(in_base);
   }
   const auto nearer = [](const MapCone& a, const MapCone& b) {
     const double ra = a.position.squaredNorm(), rb = b.position.squaredNorm();

@@ -14,8 +14,11 @@ namespace hairpin {
 
 struct BoundaryEstimatorParams {
   double min_existence = 0.0;  // cones less certain than this are not used
-  double max_range = 0.0;      // m; nor cones farther from the car
-  int max_cones = 0;           // nor more than this many, the nearest first
+  double near_min_existence =
+      0.0;  // the same for cones nearer than near_range, which were looked at more often
+  double near_range = 0.0;  // m
+  double max_range = 0.0;   // m; nor cones farther from the car
+  int max_cones = 0;        // nor more than this many, the nearest first
   double min_clear_share =
       0.0;  // with a smaller share of cones whose colour tells the side, the view is colour-blind
   PathScoreParams score;

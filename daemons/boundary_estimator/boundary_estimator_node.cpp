@@ -148,6 +148,8 @@ MiddlePathParams LoadPathParams(const Config& config) {
 BoundaryEstimatorParams LoadBoundaryEstimatorParams(const Config& config) {
   BoundaryEstimatorParams params;
   params.min_existence = config.Number("min_existence", {0.0, 1.0});
+  params.near_min_existence = config.Number("near_min_existence", {0.0, 1.0});
+  params.near_range = config.Number("near_range_m", {0.0, 100.0});
   params.max_range = config.Number("max_range_m", {5.0, 100.0});
   params.max_cones = config.Integer("max_cones", 3, static_cast<int>(PathSearch::kMaxCones));
   params.min_clear_share = config.Number("min_clear_share", {0.0, 1.0});

@@ -249,6 +249,9 @@ TEST(BoundaryEstimatorParams, AreRefusedOutOfRange) {
     EXPECT_THROW(BoundaryEstimator{params}, std::invalid_argument);
   };
   refused([](auto& p) { p.min_existence = 1.1; });
+  refused([](auto& p) { p.near_min_existence = 1.1; });
+  refused([](auto& p) { p.near_min_existence = p.min_existence - 0.1; });
+  refused([](auto& p) { p.near_range = -1.0; });
   refused([](auto& p) { p.max_range = 0.0; });
   refused([](auto& p) { p.max_cones = 0; });
   refused([](auto& p) { p.max_cones = 129; });
