@@ -103,8 +103,11 @@ BoundaryEstimator::Hypothesis BoundaryEstimator::Complete(
   return completed;
 }
 
+// Two sides that contradict no colour are never given up for one: the path would hop between the
+// two from map to map.
 bool BoundaryEstimator::Beats(const Scene& scene, const Hypothesis& one_sided,
                               const Hypothesis& searched) const {
+  if (searched.score.log_likelihood >= params_.one_sided.min_log_ratio) return false;
   return one_sided.score.log_posterior() - params_.one_sided.log_penalty >
          ScoreOf(scene, searched.stretch, params_.score).log_posterior();
 }

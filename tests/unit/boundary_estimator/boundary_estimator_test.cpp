@@ -166,6 +166,40 @@ TEST(BoundaryEstimator, FollowsOneSideWhereTheOtherIsMissing) {
   }
 }
 
+// A right-hand bend of 14 m radius of which the left cones are known, the right ones up to the car
+// only.
+TEST(BoundaryEstimator, FollowsOneSideWhereTwoWouldContradictTheColours) {
+  const test::SyntheticTrack track = test::MakeLane({{10.0}, {30.0, -1.0 / 14.0}});
+  for (double along = 8.0; along < 22.0; along += 1.0) {
+    const size_t at = static_cast<size_t>(10.0 * along);
+    const Eigen::Vector2d forward = (track.centre[at + 1] - track.centre[at]).normalized();
+    const Pose2 pose{track.centre[at].x(), track.centre[at].y(),
+                     std::atan2(forward.y(), forward.x())};
+    std::vector<MapCone> cones = ConesOf(track);
+    std::erase_if(cones, [&](const MapCone& cone) {
+      return MostProbable(cone.colour) == ConeColour::kYellow &&
+             (pose.Inverse() * cone.position).x() > 0.0;
+    });
+    const TrackEstimate estimate = Estimate(cones, pose);
+    ASSERT_TRUE(estimate.valid);
+    EXPECT_GE(estimate.path.seen_length, 10.0) << along;
+    EXPECT_LT(LargestOffset(estimate.path, track.centre, 10.0), 1.0) << along;
+  }
+}
+
+TEST(BoundaryEstimator, DoesNotGiveTwoSidesUpForALongerOne) {
+  const test::SyntheticTrack track = test::MakeLane({{8.0}, {9.1, 1.0 / 2.9}, {20.0}}, 3.2, 3.0);
+  std::vector<MapCone> cones = ConesOf(track);
+  const auto beyond = [](const MapCone& cone) {
+    return MostProbable(cone.colour) == ConeColour::kBlue && cone.position.y() > 3.0;
+  };
+  std::erase_if(cones, beyond);
+  const TrackEstimate estimate = Estimate(cones, {2.0, 0.0, 0.0});
+  ASSERT_TRUE(estimate.valid);
+  EXPECT_EQ(estimate.fallback, Fallback::kNone);
+  EXPECT_NE(estimate.left.front().id, 0);
+}
+
 TEST(BoundaryEstimator, OffsetsTheOneSidedPathByTheWidthSeenSoFar) {
   const test::SyntheticTrack track = test::MakeLane({{40.0}}, 4.4);
   BoundaryEstimator estimator(ShippedParams());
