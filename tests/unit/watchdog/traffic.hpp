@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gmock/gmock.h>
+
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -105,5 +108,20 @@ class Traffic {
   int64_t start;
   int64_t now;
 };
+
+/// A car that has nothing to complain of.
+inline const auto kHealthy =
+    testing::AllOf(testing::Field(&WatchdogStatus::mode, MapMode::kFusion),
+                   testing::Field(&WatchdogStatus::level, Level::kLog),
+                   testing::Field(&WatchdogStatus::speed_cap, 30.0),
+                   testing::Field(&WatchdogStatus::culprits, testing::IsEmpty()),
+                   testing::Field(&WatchdogStatus::reason, "healthy"));
+
+// The first status of `statuses` for which `holds`; its utime is 0 where there is none.
+template <class Predicate>
+WatchdogStatus First(const std::vector<WatchdogStatus>& statuses, Predicate holds) {
+  const auto found = std::find_if(statuses.begin(), statuses.end(), holds);
+  return found == statuses.end() ? WatchdogStatus{} : *found;
+}
 
 }  // namespace hairpin
