@@ -134,6 +134,7 @@ MiddlePathParams LoadPathParams(const Config& config) {
   MiddlePathParams params;
   params.point_spacing = config.Number("point_spacing_m", {0.1, 5.0});
   params.join_length = config.Number("join_length_m", {0.0, 10.0});
+  params.max_join_angle = config.Number("max_join_angle_rad", {0.0, 1.6});
   params.smoothing_passes = config.Integer("smoothing_passes", 0, 100);
   params.max_length = config.Number("max_length_m", {5.0, 100.0});
   params.extrapolation = config.Number("extrapolation_m", {0.0, 50.0});

@@ -60,6 +60,12 @@ double EndCurvature(const std::vector<PathPoint>& points, double window) {
   return length > 0.0 ? turned / length : 0.0;
 }
 
+// A gate beside the car that does not stand square would send the path off sideways.
+bool StandsAskew(const Eigen::Vector2d& from_car, const MiddlePathParams& params) {
+  return from_car.norm() < params.join_length &&
+         std::abs(std::atan2(from_car.y(), from_car.x())) > params.max_join_angle;
+}
+
 // Length past the last gate with cones on both sides.
 double OneSidedEnd(const Stretch& stretch) {
   double length = 0.0;
@@ -96,6 +102,7 @@ void Check(const MiddlePathParams& params) {
   };
   require(params.point_spacing > 0.0, "point_spacing must be > 0");
   require(params.join_length >= 0.0, "join_length must be >= 0");
+  require(params.max_join_angle >= 0.0, "max_join_angle must be >= 0");
   require(params.smoothing_passes >= 0, "smoothing_passes must be >= 0");
   require(params.max_length > params.point_spacing, "max_length must be > point_spacing");
   require(params.extrapolation >= 0.0, "extrapolation must be >= 0");
@@ -109,11 +116,8 @@ MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const Stretch& stretch,
   MiddlePath path;
   if (stretch.empty()) return path;
   const std::vector<Gate>& gates = stretch.gates;
-  // A gate beside the car that does not stand square would send the path off sideways.
   size_t first = 0;
-  while (first + 1 < gates.size() && (gates[first].middle() - start).norm() < params.join_length) {
-    ++first;
-  }
+  while (first + 1 < gates.size() && StandsAskew(gates[first].middle() - start, params)) ++first;
   const double first_width = first + 1 < gates.size() ? WidthBetween(gates[first], gates[first + 1])
                                                       : gates[first].width();
   std::vector<PathPoint> corners{{start, first_width, false},

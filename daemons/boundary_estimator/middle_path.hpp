@@ -9,7 +9,10 @@ namespace hairpin {
 
 struct MiddlePathParams {
   double point_spacing = 0.0;  // m, along the path
-  double join_length = 0.0;  // m: gates nearer to the car than this are driven through as they come
+  // Gates nearer to the car than join_length [m] and off its x axis by more than max_join_angle
+  // [rad] are left out.
+  double join_length = 0.0;
+  double max_join_angle = 0.0;
   int smoothing_passes = 0;  // of a (1, 2, 1) / 4 filter over the points
   double max_length = 0.0;   // m
   double extrapolation =
@@ -34,8 +37,8 @@ struct MiddlePath {
   double seen_length = 0.0;       // m, of the part that is not extrapolated
 };
 
-/// From `start` through the middles of the stretch, evenly spaced and smoothed, then on with its
-/// bend for the length of the extrapolation. An empty stretch: no points.
+/// In base. From `start` through the middles of the stretch, evenly spaced and smoothed, then on
+/// with its bend for the length of the extrapolation. An empty stretch: no points.
 MiddlePath BuildMiddlePath(const Eigen::Vector2d& start, const Stretch& stretch,
                            const MiddlePathParams& params);
 

@@ -83,11 +83,11 @@ class Rig {
     if (state.state == as_state_t::STATE_READY && m.res_go && drives)
       state.state = as_state_t::STATE_DRIVING;
     state.mission_finished = truth.lap >= 1;
-    if (m.ebs_activated) {
-      const bool finished = state.mission_finished && !m.res_stop && m.speed_mps < 0.1;
+    const bool stands = state.mission_finished && !m.res_stop && m.speed_mps < 0.1;
+    if (stands && state.state == as_state_t::STATE_DRIVING)
+      state.state = as_state_t::STATE_FINISHED;
+    if (m.ebs_activated && state.state != as_state_t::STATE_FINISHED)
       state.state = as_state_t::STATE_EMERGENCY;
-      if (finished) state.state = as_state_t::STATE_FINISHED;
-    }
     bus.Publish(channels::kAsState, state);
   }
 
