@@ -43,10 +43,11 @@ struct Track {
       clutter;  // things beside the track that a pipeline may take for a cone
 };
 
-/// Reads our own YAML, PacSim YAML, FSSIM YAML (told apart by their keys) or EUFS CSV; config/tracks/README.md says how
-/// each is understood. What comes back is drivable: at least 3 cones a side, no two within 0.1 m, neighbours at most 10 m
-/// apart, sides that do not cross, 2 m of width, the start between them, facing along them, and left of it the left side.
-/// Throws TrackError with file, line and reason.
+/// Reads our own YAML, PacSim YAML, FSSIM YAML (told apart by their keys) or EUFS CSV;
+/// config/tracks/README.md says how each is understood. What comes back is drivable: at least 3
+/// cones a side, no two within 0.1 m, neighbours at most 10 m apart, sides that do not cross, 2 m
+/// of width, the start between them, facing along them, and left of it the left side. Throws
+/// TrackError with file, line and reason.
 Track LoadTrack(const std::string& file);
 
 /// Writes our own YAML, which LoadTrack() reads back exactly. Throws std::runtime_error where it

@@ -101,8 +101,8 @@ TEST(Actuators, CountFromTheStateWhereNoCommandHasComeYet) {
 }
 
 TEST(Actuators, ParkUnlessDriving) {
-  for (const int32_t state : std::initializer_list<int32_t>{
-           as_state_t::STATE_OFF, as_state_t::STATE_READY}) {
+  for (const int32_t state :
+       std::initializer_list<int32_t>{as_state_t::STATE_OFF, as_state_t::STATE_READY}) {
     Actuators actuators = MakeActuators();
     actuators.OnState(State(kStart, state), kStart);
     actuators.OnCommand(Command(kStart), kStart);
@@ -122,7 +122,8 @@ TEST(Actuators, SetTheEmergencyBrakeOnlyOnceTheMissionIsOver) {
   actuators.OnCommand(Command(kStart), kStart);
   EXPECT_EQ(actuators.Act(kStart, 0.0).brake, 0.0);
   EXPECT_FALSE(actuators.ebs_activated());
-  actuators.OnState(State(kStart + kMillisecond, as_state_t::STATE_FINISHED), kStart + kMillisecond);
+  actuators.OnState(State(kStart + kMillisecond, as_state_t::STATE_FINISHED),
+                    kStart + kMillisecond);
   EXPECT_EQ(actuators.Act(kStart + kMillisecond, 0.0).brake, 1.0);
   EXPECT_TRUE(actuators.ebs_activated());
   EXPECT_TRUE(actuators.shutdown_circuit_closed());
