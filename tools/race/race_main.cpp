@@ -109,7 +109,10 @@ int Drive(const Arguments& arguments) {
     return kExitFailure;
   }
   const RunLog log = LoadRunLog(options.log_file);
-  const nlohmann::json report = EvaluateRun(log, ToContext(options, outcome));
+  RunContext context = ToContext(options, outcome);
+  context.faults = arguments.faults;
+  nlohmann::json report = EvaluateRun(log, context);
+  report["answers_missed"] = outcome.answers_missed;
   WriteReport(arguments.out, report, log);
   if (arguments.json) {
     std::cout << report.dump(2) << '\n';
