@@ -38,7 +38,6 @@ class Transport {
                                                            RawHandler handler);
   void Publish(const std::string& channel, const uint8_t* data, size_t size);
 
-  int fileno() { return lcm_.getFileno(); }
   const std::string& url() const { return url_; }
 
  private:
