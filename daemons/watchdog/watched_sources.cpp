@@ -18,7 +18,8 @@ SourceSpec Spec(const Channel<M>& channel) {
   return spec;
 }
 
-// The velocity filter goes on without one of them, and says so in its covariance.
+// The car goes on without one of them: the velocity filter says so in its covariance, the rest of a
+// missing LiDAR or map shows in the pipeline that it feeds.
 template <class M>
 SourceSpec Sensor(const Channel<M>& channel) {
   return Spec(channel);
@@ -74,11 +75,16 @@ std::vector<SourceSpec> WatchedChannels() {
       Sensor(kGnss),
       Essential(kVehicle, Level::kControlledStop, {}),
       Essential(kVelocity, Level::kControlledStop, {}),
+      Sensor(kLidarFront),
+      Sensor(kLidarTop),
+      Sensor(kConeClusters),
       ConePipeline(kConesFusion, Pipeline::kFusion),
       ConePipeline(kConesLidar, Pipeline::kLidar),
       ConePipeline(kConesCamera, Pipeline::kCamera),
       OwnStatus(),
       Planning(kLocalMap, {kConesFusion.name, kConesLidar.name, kConesCamera.name}),
+      Sensor(kGlobalMap),
+      Sensor(kRaceLine),
       Planning(kTrack, {kLocalMap.name}),
       Essential(kAsState, Level::kEmergency, {kVehicle.name}),
       Essential(kDriveCommand, Level::kControlledStop, {kVelocity.name}),

@@ -19,7 +19,7 @@ TEST(ChannelTable, HasUniqueNamesThatAreNoRegularExpressions) {
               std::string::npos)
         << channel.name;
   });
-  EXPECT_EQ(names.size(), 18u);
+  EXPECT_EQ(names.size(), 23u);
 }
 
 TEST(ChannelTable, CallsNoChannelStaleThatKeepsItsRate) {

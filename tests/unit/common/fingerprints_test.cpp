@@ -16,10 +16,13 @@
 #include "common/channels.hpp"
 #include "hairpin/boundary_point_t.hpp"
 #include "hairpin/channel_health_t.hpp"
+#include "hairpin/cone_cluster_t.hpp"
 #include "hairpin/cone_observation_t.hpp"
+#include "hairpin/global_cone_t.hpp"
 #include "hairpin/local_cone_t.hpp"
 #include "hairpin/path_point_t.hpp"
 #include "hairpin/path_score_t.hpp"
+#include "hairpin/race_line_point_t.hpp"
 #include "hairpin/truth_cone_t.hpp"
 #include "hairpin/view_sector_t.hpp"
 
@@ -38,7 +41,11 @@ const std::map<std::string, uint64_t> kPinned{
     {"steering_t", 0xc8d85ba29519e76fu},       {"track_t", 0x9a8ce285ab59ae6au},
     {"truth_cone_t", 0x0c8e829833420196u},     {"truth_t", 0x9a8ca8f0e7d0b94au},
     {"truth_track_t", 0x78473a999abfb991u},    {"vehicle_t", 0x4a10b5ce8d4ee6b8u},
-    {"velocity_t", 0x7a904c2206ae3cb8u},       {"view_sector_t", 0x4e3168e5e1b7cf57u},
+    {"cone_cluster_t", 0x184e7bec69fd5cd0u},   {"cone_clusters_t", 0x519f077439ef7890u},
+    {"global_cone_t", 0x62c355997fc0bcc1u},    {"global_map_t", 0x6b59960d97217597u},
+    {"lidar_scan_t", 0xa8c7d6d8db5b5747u},     {"race_line_point_t", 0x7ad0da9c37111ec2u},
+    {"race_line_t", 0x5afbdee1a138dc37u},      {"velocity_t", 0x7a904c2206ae3cb8u},
+    {"view_sector_t", 0x4e3168e5e1b7cf57u},
 };
 
 template <class... Messages>
@@ -47,11 +54,12 @@ std::map<std::string, uint64_t> Fingerprints() {
 }
 
 std::map<std::string, uint64_t> AllFingerprints() {
-  return Fingerprints<as_state_t, boundary_point_t, channel_health_t, cone_observation_t, cones_t,
-                      drive_command_t, gnss_t, ground_speed_t, heartbeat_t, imu_t, local_cone_t,
-                      local_map_t, motors_t, path_point_t, path_score_t, pipeline_status_t,
-                      steering_t, track_t, truth_cone_t, truth_t, truth_track_t, vehicle_t,
-                      velocity_t, view_sector_t>();
+  return Fingerprints<as_state_t, boundary_point_t, channel_health_t, cone_cluster_t,
+                      cone_clusters_t, cone_observation_t, cones_t, drive_command_t, global_cone_t,
+                      global_map_t, gnss_t, ground_speed_t, heartbeat_t, imu_t, lidar_scan_t,
+                      local_cone_t, local_map_t, motors_t, path_point_t, path_score_t,
+                      pipeline_status_t, race_line_point_t, race_line_t, steering_t, track_t,
+                      truth_cone_t, truth_t, truth_track_t, vehicle_t, velocity_t, view_sector_t>();
 }
 
 TEST(Fingerprints, OfEveryTypeAreAsPinned) {

@@ -23,6 +23,31 @@ inline void Fill(cones_t& m) {
   m.num_sectors = 1;
   m.num_cones = 2;
 }
+inline void Fill(lidar_scan_t& m) {
+  m.sensor_model = "VLP-32C";
+  m.ring_elevation_rad = {-0.1F, 0.0F};
+  m.num_rings = 2;
+  m.points.resize(20);
+  m.num_bytes = 20;
+  m.num_points = 2;
+}
+inline void Fill(cone_clusters_t& m) {
+  m.sectors.resize(1);
+  m.clusters.resize(1);
+  m.num_sectors = m.num_clusters = 1;
+  cone_cluster_t& cluster = m.clusters[0];
+  cluster.x_m = cluster.y_m = cluster.z_m = cluster.age_s = {1.0F, 2.0F};
+  cluster.intensity = {10, 200};
+  cluster.num_points = 2;
+}
+inline void Fill(global_map_t& m) {
+  m.cones.resize(2);
+  m.num_cones = 2;
+}
+inline void Fill(race_line_t& m) {
+  m.points.resize(2);
+  m.num_points = 2;
+}
 inline void Fill(heartbeat_t& m) {
   m.daemon = "path_tracker";
   m.build = "0123456789ab";
@@ -116,12 +141,42 @@ void VisitReals(velocity_t& m, Visitor visit) {
   VisitAll(m.wheel_slip, visit);
 }
 template <class Visitor>
+void VisitReals(lidar_scan_t& m, Visitor visit) {
+  VisitEach(visit, m.covered_share, m.azimuth_step_rad, m.coordinate_step_m, m.time_step_s);
+  for (auto& elevation : m.ring_elevation_rad) visit(elevation);
+}
+// A cone with position, covariance and colour, whatever else it has.
+template <class Cone, class Visitor>
+void VisitCone(Cone& c, Visitor& visit) {
+  VisitEach(visit, c.x_m, c.y_m, c.covariance_xx_m2, c.covariance_xy_m2, c.covariance_yy_m2);
+  VisitAll(c.probability, visit);
+}
+template <class Visitor>
 void VisitReals(cones_t& m, Visitor visit) {
   for (auto& s : m.sectors) VisitEach(visit, s.min_bearing_rad, s.max_bearing_rad, s.max_range_m);
-  for (auto& c : m.cones) {
-    VisitEach(visit, c.x_m, c.y_m, c.covariance_xx_m2, c.covariance_xy_m2, c.covariance_yy_m2);
-    VisitAll(c.probability, visit);
+  for (auto& c : m.cones) VisitCone(c, visit);
+}
+template <class Visitor>
+void VisitReals(cone_clusters_t& m, Visitor visit) {
+  for (auto& s : m.sectors) VisitEach(visit, s.min_bearing_rad, s.max_bearing_rad, s.max_range_m);
+  for (auto& cluster : m.clusters) {
+    VisitCone(cluster.cone, visit);
+    for (auto* reals : {&cluster.x_m, &cluster.y_m, &cluster.z_m, &cluster.age_s}) {
+      for (auto& real : *reals) visit(real);
+    }
   }
+}
+template <class Visitor>
+void VisitReals(global_map_t& m, Visitor visit) {
+  VisitEach(visit, m.x_m, m.y_m, m.yaw_rad, m.solve_ms);
+  VisitAll(m.pose_covariance, visit);
+  VisitAll(m.T_map_local, visit);
+  for (auto& c : m.cones) VisitCone(c, visit);
+}
+template <class Visitor>
+void VisitReals(race_line_t& m, Visitor visit) {
+  VisitAll(m.T_map_local, visit);
+  for (auto& p : m.points) VisitEach(visit, p.x_m, p.y_m, p.speed_mps, p.left_m, p.right_m);
 }
 template <class Visitor>
 void VisitReals(pipeline_status_t& m, Visitor visit) {
@@ -131,9 +186,8 @@ template <class Visitor>
 void VisitReals(local_map_t& m, Visitor visit) {
   VisitEach(visit, m.x_m, m.y_m, m.yaw_rad);
   for (auto& c : m.cones) {
-    VisitEach(visit, c.x_m, c.y_m, c.covariance_xx_m2, c.covariance_xy_m2, c.covariance_yy_m2,
-              c.existence);
-    VisitAll(c.probability, visit);
+    VisitCone(c, visit);
+    visit(c.existence);
   }
 }
 template <class Visitor>
