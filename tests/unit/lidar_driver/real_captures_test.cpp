@@ -95,7 +95,8 @@ TEST(RealVlp32c, FirstScanEqualsThePublishedCloud) {
   const VelodyneDecoder decoder(Vlp32c());
   DecodedPacket decoded;
   Cloud ours;
-  for (const auto& packet : ReadVelodyneScans(kVlp32 + "/1713492677464078412_0.db3").front()) {
+  const auto scans = ReadVelodyneScans(kVlp32 + "/1713492677464078412_0.db3");
+  for (const auto& packet : scans.front()) {
     ASSERT_FALSE(decoder.Decode(packet.bytes, decoded));
     for (const auto& point : decoded.points) ours.push_back(point.position);
   }
