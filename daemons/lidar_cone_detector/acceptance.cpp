@@ -7,7 +7,8 @@ Verdict Judge(const ConeEvidence& evidence, const AcceptanceParams& params) {
   if (evidence.returns < params.min_returns) return Verdict::kTooFew;
   if (returns < params.min_share * static_cast<double>(evidence.expected.most))
     return Verdict::kTooFew;
-  if (returns > params.max_share * static_cast<double>(evidence.expected.all) + params.spare_returns)
+  if (returns >
+      params.max_share * static_cast<double>(evidence.expected.all) + params.spare_returns)
     return Verdict::kTooMany;
   if (evidence.top < evidence.expected.top - static_cast<float>(params.missing_top))
     return Verdict::kTooLow;

@@ -5,17 +5,17 @@
 namespace hairpin {
 
 struct AcceptanceParams {
-  int min_returns = 0;            // above the ground's band
-  double min_share = 0.0;         // of the expected number: hidden, dark and dropped returns
+  int min_returns = 0;     // above the ground's band
+  double min_share = 0.0;  // of the expected number: hidden, dark and dropped returns
   double max_share = 0.0;
-  double spare_returns = 0.0;     // on top of max_share: counts are small far off
-  double missing_top = 0.0;       // below the highest beam that should have met the cone [m]
-  double max_residual = 0.0;      // of the fit [m]
+  double spare_returns = 0.0;  // on top of max_share: counts are small far off
+  double missing_top = 0.0;    // below the highest beam that should have met the cone [m]
+  double max_residual = 0.0;   // of the fit [m]
 };
 
 /// What was measured of a candidate, heights above the ground [m].
 struct ConeEvidence {
-  int returns = 0;        // above the ground's band
+  int returns = 0;  // above the ground's band
   float top = 0.0f;
   float residual = 0.0f;  // of the fit
   ExpectedReturns expected;

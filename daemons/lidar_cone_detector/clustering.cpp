@@ -14,8 +14,18 @@ struct Offset {
 
 // Half of the 5 x 5 cells around one: the other half finds the pair from its own side. The four
 // corners count too: they touch the tolerance exactly.
-constexpr std::array<Offset, 12> kNeighbours{{{1, 0}, {2, 0}, {-2, 1}, {-1, 1}, {0, 1}, {1, 1},
-                                              {2, 1}, {-2, 2}, {-1, 2}, {0, 2}, {1, 2}, {2, 2}}};
+constexpr std::array<Offset, 12> kNeighbours{{{1, 0},
+                                              {2, 0},
+                                              {-2, 1},
+                                              {-1, 1},
+                                              {0, 1},
+                                              {1, 1},
+                                              {2, 1},
+                                              {-2, 2},
+                                              {-1, 2},
+                                              {0, 2},
+                                              {1, 2},
+                                              {2, 2}}};
 constexpr int32_t kBorder = 2;  // cells without points, so that neighbours need no bounds
 
 constexpr int64_t kMaxCells = 16'000'000;

@@ -35,7 +35,7 @@ class Clustering {
  private:
   struct Cell {
     int32_t column, row;
-    uint32_t first;   // in sorted_
+    uint32_t first;  // in sorted_
     uint32_t count;
     uint32_t parent;  // union-find
     float min_x, max_x, min_y, max_y;
@@ -52,8 +52,8 @@ class Clustering {
   float per_metre_;
   float half_extent_;
   int32_t width_;
-  std::vector<uint32_t> cell_at_;  // grid: number of the occupied cell + 1, 0 where none
-  std::vector<Cell> cells_;        // occupied ones, in the order of their first point
+  std::vector<uint32_t> cell_at_;            // grid: number of the occupied cell + 1, 0 where none
+  std::vector<Cell> cells_;                  // occupied ones, in the order of their first point
   std::vector<uint32_t> cell_of_, members_;  // of the points that take part, in their order
   struct Planar {
     float x, y;

@@ -10,7 +10,7 @@ namespace {
 constexpr int kIterations = 5;
 
 Eigen::Vector2f FirstGuess(std::span<const ConeReturn> returns, const Eigen::Vector2f& sensor,
-                           const ConeShape& shape) {
+                           const ConeBody& shape) {
   Eigen::Vector2f mean = Eigen::Vector2f::Zero();
   float radius = 0.0f;
   for (const ConeReturn& point : returns) {
@@ -26,7 +26,7 @@ Eigen::Vector2f FirstGuess(std::span<const ConeReturn> returns, const Eigen::Vec
 }  // namespace
 
 ConeFit FitCone(std::span<const ConeReturn> returns, const Eigen::Vector2f& sensor,
-                const ConeShape& shape, const ConeFitParams& params) {
+                const ConeBody& shape, const ConeFitParams& params) {
   const Eigen::Vector2f guess = FirstGuess(returns, sensor, shape);
   const float prior = static_cast<float>(std::pow(params.range_sigma / params.prior_sigma, 2));
   ConeFit fit{guess, 0.0f};

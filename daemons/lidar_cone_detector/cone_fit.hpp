@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "daemons/lidar_cone_detector/cone_shape.hpp"
+#include "daemons/lidar_cone_detector/cone_body.hpp"
 
 namespace hairpin {
 
@@ -14,8 +14,8 @@ struct ConeReturn {
 };
 
 struct ConeFitParams {
-  double range_sigma = 0.0;   // noise of one return along its beam [m]
-  double prior_sigma = 0.0;   // of the first guess [m]
+  double range_sigma = 0.0;  // noise of one return along its beam [m]
+  double prior_sigma = 0.0;  // of the first guess [m]
 };
 
 struct ConeFit {
@@ -29,6 +29,6 @@ struct ConeFit {
 /// |p_i - axis| - radius(h_i), with the guess as prior, then uses where the surface bends. Needs at
 /// least one return.
 ConeFit FitCone(std::span<const ConeReturn> returns, const Eigen::Vector2f& sensor,
-                const ConeShape& shape, const ConeFitParams& params);
+                const ConeBody& shape, const ConeFitParams& params);
 
 }  // namespace hairpin

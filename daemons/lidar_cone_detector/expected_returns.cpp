@@ -16,7 +16,7 @@ void ReturnModel::SetSensors(std::span<const SensorGeometry> sensors) {
   }
 }
 
-ExpectedReturns ReturnModel::Expect(float x, float y, float ground, const ConeShape& shape,
+ExpectedReturns ReturnModel::Expect(float x, float y, float ground, const ConeBody& shape,
                                     float min_height) const {
   ExpectedReturns expected;
   const auto height = static_cast<float>(shape.height);

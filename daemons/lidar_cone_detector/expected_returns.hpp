@@ -3,16 +3,16 @@
 #include <span>
 #include <vector>
 
-#include "daemons/lidar_cone_detector/cone_shape.hpp"
+#include "daemons/lidar_cone_detector/cone_body.hpp"
 #include "daemons/lidar_cone_detector/point_cloud.hpp"
 
 namespace hairpin {
 
 /// What a cone that nothing hides returns to one sensor or to several.
 struct ExpectedReturns {
-  float most = 0.0f;      // to the sensor that sees it best
-  float all = 0.0f;       // to all of them together
-  float top = 0.0f;       // height of the highest beam that meets the cone [m]; 0 where none does
+  float most = 0.0f;  // to the sensor that sees it best
+  float all = 0.0f;   // to all of them together
+  float top = 0.0f;   // height of the highest beam that meets the cone [m]; 0 where none does
 };
 
 /// The number of returns that a cone gives, beam by beam: every ring that meets it between
@@ -23,7 +23,7 @@ class ReturnModel {
  public:
   /// Sensors are those of the cloud; `min_height` above ground [m].
   void SetSensors(std::span<const SensorGeometry> sensors);
-  ExpectedReturns Expect(float x, float y, float ground, const ConeShape& shape,
+  ExpectedReturns Expect(float x, float y, float ground, const ConeBody& shape,
                          float min_height) const;
 
  private:

@@ -32,11 +32,15 @@ inline size_t FootReconstruction::CellOf(float x, float y) const {
 }
 
 void FootReconstruction::Mark(std::span<const Eigen::Vector2f> centres) {
-  const size_t last = std::min(centres.size(), static_cast<size_t>(std::numeric_limits<uint16_t>::max()));
+  const size_t last =
+      std::min(centres.size(), static_cast<size_t>(std::numeric_limits<uint16_t>::max()));
   for (size_t k = 0; k < last; ++k) {
-    const auto clamped = [this](float value) { return std::clamp(value, -half_extent_, half_extent_); };
+    const auto clamped = [this](float value) {
+      return std::clamp(value, -half_extent_, half_extent_);
+    };
     const size_t low = CellOf(clamped(centres[k].x() - radius_), clamped(centres[k].y() - radius_));
-    const size_t high = CellOf(clamped(centres[k].x() + radius_), clamped(centres[k].y() + radius_));
+    const size_t high =
+        CellOf(clamped(centres[k].x() + radius_), clamped(centres[k].y() + radius_));
     for (size_t row = low / width_; row <= high / width_; ++row) {
       for (size_t column = low % width_; column <= high % width_; ++column) {
         const size_t cell = row * width_ + column;

@@ -32,8 +32,8 @@ class FootReconstruction {
   float half_extent_;
   float per_metre_;
   size_t width_;
-  std::vector<uint8_t> count_;      // of centres near each cell
-  std::vector<uint16_t> nearby_;    // kPerCell for each cell
+  std::vector<uint8_t> count_;    // of centres near each cell
+  std::vector<uint16_t> nearby_;  // kPerCell for each cell
   std::vector<size_t> marked_;
   struct Hit {
     uint32_t point;

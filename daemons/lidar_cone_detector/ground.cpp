@@ -22,8 +22,9 @@ const std::vector<float>& Ground::Fit(const PointCloud& cloud) {
 }
 
 float Ground::HeightAt(float x, float y) const {
-  const float bearing = (FastBearing(y, x) + std::numbers::pi_v<float>) *
-                        static_cast<float>(grid_.sectors()) / (2.0f * std::numbers::pi_v<float>);
+  const float bearing =
+      (FastBearing(y, x) + std::numbers::pi_v<float>)*static_cast<float>(grid_.sectors()) /
+      (2.0f * std::numbers::pi_v<float>);
   return plane_.At(x, y) + Residual(bearing, std::sqrt(x * x + y * y));
 }
 
@@ -33,9 +34,11 @@ inline float Ground::Residual(float bearing, float range) const {
   const float shifted = bearing + static_cast<float>(sectors) - 0.5f;
   const int whole = static_cast<int>(shifted);
   const float across = shifted - static_cast<float>(whole);
-  const int left = whole >= sectors ? (whole >= 2 * sectors ? whole - 2 * sectors : whole - sectors) : whole;
+  const int left =
+      whole >= sectors ? (whole >= 2 * sectors ? whole - 2 * sectors : whole - sectors) : whole;
   const int right = left + 1 == sectors ? 0 : left + 1;
-  const float radial = std::min(range / grid_.bin_length(), static_cast<float>(grid_.bins()) - 0.001f);
+  const float radial =
+      std::min(range / grid_.bin_length(), static_cast<float>(grid_.bins()) - 0.001f);
   const int bin = static_cast<int>(radial);
   const float along = radial - static_cast<float>(bin);
   const float* a = lines_.row(left) + bin;

@@ -53,11 +53,12 @@ void GroundLines::TryPending() {
     Add(line, sample);
   }
   const auto slope_limit = static_cast<float>(params_.max_slope);
-  const bool straight = line.n == static_cast<double>(pending_.size()) &&
-                        std::abs(line.slope) < slope_limit;
+  const bool straight =
+      line.n == static_cast<double>(pending_.size()) && std::abs(line.slope) < slope_limit;
   // Ground goes on from where it was, no steeper than ground can be.
   const float gap = std::max(line.first_range - lines_.back().last_range, bin_length_);
-  const float step = std::abs(line.At(line.first_range) - lines_.back().At(lines_.back().last_range));
+  const float step =
+      std::abs(line.At(line.first_range) - lines_.back().At(lines_.back().last_range));
   if (straight && step <= slope_limit * gap + static_cast<float>(params_.tolerance)) {
     lines_.push_back(line);
     pending_.clear();
@@ -96,7 +97,8 @@ void GroundLines::WriteRow(int sector) {
     while (line + 1 < lines_.size() && lines_[line + 1].first_range <= range) ++line;
     const Line& current = lines_[line];
     if (range <= current.last_range || line + 1 == lines_.size()) {
-      row[bin] = current.At(std::clamp(range, current.first_range, current.last_range + kExtrapolation));
+      row[bin] =
+          current.At(std::clamp(range, current.first_range, current.last_range + kExtrapolation));
       continue;
     }
     // In the gap between two lines: from the end of one to the start of the next.
@@ -112,7 +114,9 @@ void GroundLines::FillEmptySectors() {
     return;
   }
   const auto width = static_cast<size_t>(bins_ + 1);
-  const auto index = [this](int sector) { return static_cast<size_t>((sector + sectors_) % sectors_); };
+  const auto index = [this](int sector) {
+    return static_cast<size_t>((sector + sectors_) % sectors_);
+  };
   for (int sector = 0; sector < sectors_; ++sector) {
     if (known_[static_cast<size_t>(sector)]) continue;
     int below = 1, above = 1;
@@ -122,7 +126,8 @@ void GroundLines::FillEmptySectors() {
     const float* from = table_.data() + index(sector - below) * width;
     const float* to = table_.data() + index(sector + above) * width;
     float* row = table_.data() + static_cast<size_t>(sector) * width;
-    for (size_t bin = 0; bin < width; ++bin) row[bin] = (1.0f - share) * from[bin] + share * to[bin];
+    for (size_t bin = 0; bin < width; ++bin)
+      row[bin] = (1.0f - share) * from[bin] + share * to[bin];
   }
 }
 

@@ -8,12 +8,12 @@
 namespace hairpin {
 
 struct GroundLineParams {
-  double max_slope = 0.0;        // against the plane
-  double slope_sigma = 0.0;      // how steep ground usually is against the plane
-  double height_sigma = 0.0;     // of a cell's lowest point about its line [m]
-  double tolerance = 0.0;        // a point this close to a line goes on with it [m]
-  double max_start_height = 0.0; // of the first point of a sector above or below the plane [m]
-  int min_points = 0;            // that a line which departs from the last one must have
+  double max_slope = 0.0;         // against the plane
+  double slope_sigma = 0.0;       // how steep ground usually is against the plane
+  double height_sigma = 0.0;      // of a cell's lowest point about its line [m]
+  double tolerance = 0.0;         // a point this close to a line goes on with it [m]
+  double max_start_height = 0.0;  // of the first point of a sector above or below the plane [m]
+  int min_points = 0;             // that a line which departs from the last one must have
 };
 
 /// The ground's height above the plane in every sector, as lines over range fitted piece by piece
@@ -60,9 +60,9 @@ class GroundLines {
   int bins_;
   float bin_length_;
   std::vector<float> table_;
-  std::vector<uint8_t> known_;  // sectors with a line of their own
-  std::vector<Line> lines_;     // of the sector in work
-  std::vector<Sample> pending_; // that do not fit the last line
+  std::vector<uint8_t> known_;   // sectors with a line of their own
+  std::vector<Line> lines_;      // of the sector in work
+  std::vector<Sample> pending_;  // that do not fit the last line
 };
 
 }  // namespace hairpin

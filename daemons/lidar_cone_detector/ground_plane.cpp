@@ -39,8 +39,8 @@ Sums Accumulate(const PolarGrid& grid, const GroundPlane& plane, int bins, doubl
 
 GroundPlane FitGroundPlane(const PolarGrid& grid, const GroundPlaneParams& params) {
   GroundPlane plane;
-  const int bins =
-      std::min(grid.bins(), static_cast<int>(params.max_range / static_cast<double>(grid.bin_length())));
+  const int bins = std::min(
+      grid.bins(), static_cast<int>(params.max_range / static_cast<double>(grid.bin_length())));
   for (int i = 0; i < kIterations; ++i) {
     const double share = static_cast<double>(i) / (kIterations - 1);
     const double tolerance = params.tolerance * (kFirstTolerance + share * (1.0 - kFirstTolerance));

@@ -12,7 +12,7 @@ namespace {
 // the cone's.
 constexpr float kOffSurface = 0.10f;
 
-float MeanRadius(const ConeShape& shape) {
+float MeanRadius(const ConeBody& shape) {
   return static_cast<float>(0.5 * (shape.foot_radius + shape.top_radius));
 }
 
@@ -67,7 +67,7 @@ void LidarConeDetector::Examine(const PointCloud& cloud, std::span<const uint32_
   float top = 0.0f;
   for (const uint32_t i : points) top = std::max(top, heights[i]);
   const bool large = top > static_cast<float>(params_.small_cone.height) + kOffSurface;
-  const ConeShape& shape = large ? params_.large_cone : params_.small_cone;
+  const ConeBody& shape = large ? params_.large_cone : params_.small_cone;
   returns_.clear();
   for (const uint32_t i : points) {
     if (heights[i] > band) returns_.push_back({{cloud.x[i], cloud.y[i]}, heights[i]});
@@ -81,8 +81,8 @@ void LidarConeDetector::Examine(const PointCloud& cloud, std::span<const uint32_
   ConeEvidence evidence;
   evidence.residual = fit.residual;
   for (const uint32_t i : points) {
-    const float off = (Eigen::Vector2f(cloud.x[i], cloud.y[i]) - fit.axis).norm() -
-                      shape.RadiusAt(heights[i]);
+    const float off =
+        (Eigen::Vector2f(cloud.x[i], cloud.y[i]) - fit.axis).norm() - shape.RadiusAt(heights[i]);
     if (off > kOffSurface) continue;
     members_.push_back(i);
     if (heights[i] <= band) continue;

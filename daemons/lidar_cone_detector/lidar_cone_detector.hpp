@@ -7,8 +7,8 @@
 
 #include "daemons/lidar_cone_detector/acceptance.hpp"
 #include "daemons/lidar_cone_detector/clustering.hpp"
+#include "daemons/lidar_cone_detector/cone_body.hpp"
 #include "daemons/lidar_cone_detector/cone_fit.hpp"
-#include "daemons/lidar_cone_detector/cone_shape.hpp"
 #include "daemons/lidar_cone_detector/expected_returns.hpp"
 #include "daemons/lidar_cone_detector/foot_reconstruction.hpp"
 #include "daemons/lidar_cone_detector/ground.hpp"
@@ -23,29 +23,29 @@ struct CovarianceParams {
 
 struct LidarConeDetectorParams {
   GroundParams ground;
-  double ground_band = 0.0;       // points below this height are ground [m]
-  double max_height = 0.0;        // points above take no part [m]
-  double max_range = 0.0;         // of cones, from base [m]
-  double cluster_tolerance = 0.0; // [m]
+  double ground_band = 0.0;         // points below this height are ground [m]
+  double max_height = 0.0;          // points above take no part [m]
+  double max_range = 0.0;           // of cones, from base [m]
+  double cluster_tolerance = 0.0;   // [m]
   double max_cluster_extent = 0.0;  // a wider cluster is no cone [m]
-  double foot_radius = 0.0;       // of the cylinder for the foot [m]
-  double foot_height = 0.0;       // its lower end above the ground: the plate is flat ground [m]
-  ConeShape small_cone, large_cone;
+  double foot_radius = 0.0;         // of the cylinder for the foot [m]
+  double foot_height = 0.0;         // its lower end above the ground: the plate is flat ground [m]
+  ConeBody small_cone, large_cone;
   ConeFitParams fit;
   AcceptanceParams acceptance;
-  double min_distance = 0.0;      // nearer detections are one [m]
+  double min_distance = 0.0;  // nearer detections are one [m]
   CovarianceParams covariance;
-  int max_cones = 0;              // in one scan, nearest first
+  int max_cones = 0;  // in one scan, nearest first
 };
 
 /// A cone in base at the cloud's time.
 struct DetectedCone {
   Eigen::Vector2f position = Eigen::Vector2f::Zero();    // of its axis [m]
   Eigen::Matrix2f covariance = Eigen::Matrix2f::Zero();  // [m^2]
-  bool large = false;              // stands higher than a small cone can
-  std::vector<uint32_t> points;    // its returns, foot included: indices into the cloud
-  int returns = 0;                 // above the ground's band
-  float expected = 0.0f;           // to the sensor that sees it best
+  bool large = false;                                    // stands higher than a small cone can
+  std::vector<uint32_t> points;  // its returns, foot included: indices into the cloud
+  int returns = 0;               // above the ground's band
+  float expected = 0.0f;         // to the sensor that sees it best
 };
 
 /// A cluster that was looked at, for pictures and figures.
@@ -59,8 +59,8 @@ enum class DetectorStage { kGround, kClusters, kFeet, kCones };
 inline constexpr int kNumDetectorStages = 4;
 
 /// LiDAR points to cones [paper III-B, "LiDAR only"]: adaptive ground removal, Euclidean clusters,
-/// reconstruction of the foot, a cone's surface fitted, acceptance by the expected number of returns.
-/// Keeps its buffers from call to call.
+/// reconstruction of the foot, a cone's surface fitted, acceptance by the expected number of
+/// returns. Keeps its buffers from call to call.
 class LidarConeDetector {
  public:
   /// Throws std::invalid_argument where a parameter cannot be.
@@ -98,7 +98,7 @@ class LidarConeDetector {
   const std::vector<float>* heights_ = nullptr;
   std::vector<uint32_t> obstacles_;
   std::vector<Eigen::Vector2f> centres_;
-  std::vector<ConeReturn> returns_;   // of the candidate in work
+  std::vector<ConeReturn> returns_;  // of the candidate in work
   std::vector<uint32_t> members_;
   std::vector<Candidate> candidates_;
   std::vector<DetectedCone> cones_;

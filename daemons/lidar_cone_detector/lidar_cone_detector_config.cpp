@@ -22,8 +22,8 @@ GroundParams LoadGround(const Config& config) {
   return params;
 }
 
-ConeShape LoadShape(const Config& config) {
-  ConeShape shape;
+ConeBody LoadShape(const Config& config) {
+  ConeBody shape;
   shape.height = config.Number("height_m", {0.1, 2.0});
   shape.foot_radius = config.Number("foot_radius_m", {0.01, 0.5});
   shape.top_radius = config.Number("top_radius_m", {0.0, 0.5});

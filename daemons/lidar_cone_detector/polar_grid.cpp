@@ -13,7 +13,8 @@ constexpr float kPi = std::numbers::pi_v<float>;
 // Odd polynomial for atan on [0, 1] (Abramowitz and Stegun 4.4.49, 1964): error below 1e-5.
 inline float AtanOfUnit(float t) {
   const float u = t * t;
-  return t * (0.9998660f + u * (-0.3302995f + u * (0.1801410f + u * (-0.0851330f + u * 0.0208351f))));
+  return t *
+         (0.9998660f + u * (-0.3302995f + u * (0.1801410f + u * (-0.0851330f + u * 0.0208351f))));
 }
 
 inline float Bearing(float y, float x) {
@@ -43,8 +44,7 @@ PolarGrid::PolarGrid(const PolarGridParams& params)
   lowest_.resize(cells);
   lowest_range_.resize(cells);
   for (int sector = 0; sector < sectors_; ++sector) {
-    const double bearing =
-        -std::numbers::pi + 2.0 * std::numbers::pi * (sector + 0.5) / sectors_;
+    const double bearing = -std::numbers::pi + 2.0 * std::numbers::pi * (sector + 0.5) / sectors_;
     cosine_.push_back(static_cast<float>(std::cos(bearing)));
     sine_.push_back(static_cast<float>(std::sin(bearing)));
   }

@@ -80,7 +80,8 @@ std::vector<TrueCone> InBase(const std::vector<SurveyedCone>& map, const Pose2& 
 
 std::vector<LidarDetection> ToDetections(const std::vector<DetectedCone>& cones) {
   std::vector<LidarDetection> detections;
-  for (const DetectedCone& cone : cones) detections.push_back({cone.position.cast<double>(), kColourUnknown});
+  for (const DetectedCone& cone : cones)
+    detections.push_back({cone.position.cast<double>(), kColourUnknown});
   return detections;
 }
 
@@ -111,12 +112,13 @@ void Run(const LidarOptions& options) {
     const std::vector<LidarDetection> detections = ToDetections(cones);
     figures.Add(truth, detections, place, ms);
     if (options.picture == number)
-      WriteFile(options.out, DrawScan(number, cloud, detector, truth, detections));
+      WriteFile(options.out, DrawScan(number, cloud, detector.heights(), detector.candidates(),
+                                      truth, detections));
     ++number;
   }
   if (options.picture && *options.picture >= number)
-    throw RecordingError("--picture " + std::to_string(*options.picture) + ": the run has scans 0 to " +
-                         std::to_string(number - 1));
+    throw RecordingError("--picture " + std::to_string(*options.picture) +
+                         ": the run has scans 0 to " + std::to_string(number - 1));
   PrintFigures(figures.ToJson(), options.json);
 }
 

@@ -155,7 +155,8 @@ nlohmann::json LidarFigures::RangeBin(double from, double to) const {
   };
   double false_ones = 0.0;
   for (const Reported& reported : reported_)
-    false_ones += reported.in_view && reported.is_false && reported.range >= from && reported.range < to;
+    false_ones +=
+        reported.in_view && reported.is_false && reported.range >= from && reported.range < to;
   return {{"from_m", from},
           {"to_m", to},
           {"cones", cones},
@@ -207,7 +208,8 @@ nlohmann::json LidarFigures::ToJson() const {
       errors.push_back(std::hypot(seen.along, seen.across));
   }
   double false_ones = 0.0;
-  for (const Reported& reported : reported_) false_ones += reported.is_false && reported.range <= kFarthest;
+  for (const Reported& reported : reported_)
+    false_ones += reported.is_false && reported.range <= kFarthest;
   nlohmann::json ranges = nlohmann::json::array();
   for (size_t i = 0; i + 1 < kRangeBins.size(); ++i)
     ranges.push_back(RangeBin(kRangeBins[i], kRangeBins[i + 1]));

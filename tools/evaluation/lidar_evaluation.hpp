@@ -39,7 +39,8 @@ struct ScanMatch {
 };
 
 /// Nearest pairs first, one to one.
-ScanMatch MatchScan(const std::vector<TrueCone>& cones, const std::vector<LidarDetection>& detections);
+ScanMatch MatchScan(const std::vector<TrueCone>& cones,
+                    const std::vector<LidarDetection>& detections);
 
 /// Adds up scans and tells the figures.
 class LidarFigures {

@@ -128,7 +128,8 @@ std::vector<SurveyedCone> LoadSurveyedMap(const std::string& file) {
     std::string name;
     fields >> x >> comma_x >> y >> comma_y >> name;
     const std::optional<ConeColour> colour = ConeColourFromName(name);
-    if (!fields || comma_x != ',' || comma_y != ',' || !std::isfinite(x) || !std::isfinite(y) || !colour)
+    if (!fields || comma_x != ',' || comma_y != ',' || !std::isfinite(x) || !std::isfinite(y) ||
+        !colour)
       throw RecordingError(file + ": line " + std::to_string(number) + ": must be x,y,colour");
     map.push_back({{x, y}, *colour});
   }

@@ -23,8 +23,8 @@ struct RecordedScan {
 };
 
 /// Reads a recording of LiDAR scans: a .xz file of little-endian records "FSCN", seven float64
-/// (t_s, map_x_m, map_y_m, map_yaw_rad, vx_mps, vy_mps, yaw_rate_radps), uint32 n, int16 x[n], y[n],
-/// z[n] in mm, uint8 intensity[n]. Unpacks as it goes: memory is bounded by the largest scan.
+/// (t_s, map_x_m, map_y_m, map_yaw_rad, vx_mps, vy_mps, yaw_rate_radps), uint32 n, int16 x[n],
+/// y[n], z[n] in mm, uint8 intensity[n]. Unpacks as it goes: memory is bounded by the largest scan.
 class RecordedScanReader {
  public:
   /// Throws RecordingError where the file cannot be read.

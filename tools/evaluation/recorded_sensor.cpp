@@ -40,7 +40,8 @@ void RecordedSensor::ToCloud(const RecordedScan& scan, int keep_every, PointClou
     float age = 0.0f;
     const Eigen::Vector3f seen = T_sensor_base_ * Skewed(point, scan.velocity, age);
     const float elevation = std::atan2(seen.z(), seen.head<2>().norm());
-    const int ring = std::clamp(static_cast<int>(std::lround((elevation - kLowest) / kRingStep)), 0, kRings - 1);
+    const int ring =
+        std::clamp(static_cast<int>(std::lround((elevation - kLowest) / kRingStep)), 0, kRings - 1);
     if (ring % keep_every != 0) continue;
     cloud.Add(point, age, scan.intensity[i], static_cast<uint8_t>(ring / keep_every), 0);
   }

@@ -6,8 +6,8 @@
 namespace hairpin {
 
 /// The sensor of the recorded car, as far as the recordings tell: 64 rings below the horizon, 1024
-/// firings at 20 revolutions a second, clockwise, ending behind the car. Where it sits was fitted to
-/// the rings that flat ground shows; recordings hold no rings, so a point's ring is what its
+/// firings at 20 revolutions a second, clockwise, ending behind the car. Where it sits was fitted
+/// to the rings that flat ground shows; recordings hold no rings, so a point's ring is what its
 /// elevation says once the deskewing has been undone.
 class RecordedSensor {
  public:
