@@ -9,12 +9,12 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kRings = 64;
-constexpr float kLowest = -22.5f * kPi / 180.0f;  // elevation of ring 0; the highest looks level
-constexpr float kRingStep = -kLowest / (kRings - 1);
+constexpr float kLowest = -22.05f * kPi / 180.0f;  // elevation of ring 0
+constexpr float kRingStep = 0.345f * kPi / 180.0f;
 constexpr float kAzimuthStep = 2.0f * kPi / 1024.0f;
 constexpr float kRevolution = 0.05f;  // s
 const Eigen::Vector3f kMount(1.03f, 0.0f, 0.49f);
-constexpr float kPitch = 0.018f;  // nose down
+constexpr float kPitch = -0.018f;  // looks up
 
 // Where the point was in base when it was fired.
 Eigen::Vector3f Skewed(const Eigen::Vector3f& point, const Twist2& velocity, float& age) {
