@@ -99,11 +99,10 @@ void Run(const LidarOptions& options) {
 
   RecordedScanReader reader(options.run);
   LidarFigures figures;
-  PointCloud whole, cloud;
+  PointCloud cloud;
   int64_t number = 0;
   while (const std::optional<RecordedScan> scan = reader.Next()) {
-    sensor.ToCloud(*scan, keep_every, whole);
-    params.body.RemoveFrom(whole, cloud);
+    sensor.ToCloud(*scan, keep_every, cloud);
     stopwatch.Start();
     const std::vector<DetectedCone>& cones = detector.Detect(cloud, sensors);
     const std::vector<double> ms = stopwatch.Stop();
