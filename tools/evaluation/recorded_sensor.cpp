@@ -10,7 +10,6 @@ namespace hairpin {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr int kRings = 64;
 constexpr float kLowest = -22.05f * kPi / 180.0f;  // elevation of ring 0
 constexpr float kRingStep = 0.345f * kPi / 180.0f;
 constexpr float kAzimuthStep = 2.0f * kPi / 1024.0f;

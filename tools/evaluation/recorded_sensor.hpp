@@ -11,6 +11,8 @@ namespace hairpin {
 /// elevation says once the deskewing has been undone.
 class RecordedSensor {
  public:
+  static constexpr int kRings = 64;
+
   RecordedSensor();
 
   /// As the detector takes it. `keep_every`: 1 for all rings, 2 to thin 64 to 32 by elevation.
