@@ -6,7 +6,7 @@
 #include "common/daemon.hpp"
 #include "tools/report/log_writer.hpp"
 #include "tools/simulator/lidar/centre_drive.hpp"
-#include "tools/simulator/lidar/revolution.hpp"
+#include "tools/simulator/lidar/scan_recorder.hpp"
 #include "tools/simulator/simulator.hpp"
 #include "tools/simulator/truth.hpp"
 
@@ -63,9 +63,9 @@ void Record(const Arguments& arguments) {
   const CentreDrive drive(track, arguments.speed);
   Log log(arguments.out);
   int64_t utime = Simulator::kFirstUtime;
-  std::map<std::string, Revolution> revolutions;
+  std::map<std::string, ScanRecorder> revolutions;
   for (const std::string& name : LidarRig::Sources())
-    revolutions.emplace(name, Revolution(params.lidars.sensor, utime));
+    revolutions.emplace(name, ScanRecorder(params.lidars.sensor, utime));
   LidarRig rig(params.lidars, car, track, arguments.seed, utime,
                [](const std::string&, LidarRig::Port, std::span<const uint8_t>) {});
   rig.OnSequence([&](const std::string& sensor, const FiringSequence& sequence) {

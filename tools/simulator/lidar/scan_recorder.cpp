@@ -1,4 +1,4 @@
-#include "tools/simulator/lidar/revolution.hpp"
+#include "tools/simulator/lidar/scan_recorder.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -12,7 +12,7 @@ constexpr double kCut = std::numbers::pi;
 
 }  // namespace
 
-Revolution::Revolution(const LidarSensorParams& params, int64_t epoch_us)
+ScanRecorder::ScanRecorder(const LidarSensorParams& params, int64_t epoch_us)
     : params_(params), epoch_us_(epoch_us) {
   const auto& lasers = params.model.lasers;
   std::vector<size_t> order(lasers.size());
@@ -26,7 +26,7 @@ Revolution::Revolution(const LidarSensorParams& params, int64_t epoch_us)
   }
 }
 
-std::optional<lidar_scan_t> Revolution::Add(const FiringSequence& sequence) {
+std::optional<lidar_scan_t> ScanRecorder::Add(const FiringSequence& sequence) {
   std::optional<lidar_scan_t> finished;
   if (last_azimuth_ < kCut && sequence.azimuth_rad >= kCut && !points_.empty()) {
     finished = Finish();
@@ -47,7 +47,7 @@ std::optional<lidar_scan_t> Revolution::Add(const FiringSequence& sequence) {
   return finished;
 }
 
-lidar_scan_t Revolution::Finish() const {
+lidar_scan_t ScanRecorder::Finish() const {
   const int64_t newest = std::max_element(points_.begin(), points_.end(), [](auto& a, auto& b) {
                            return a.time_ns < b.time_ns;
                          })->time_ns;

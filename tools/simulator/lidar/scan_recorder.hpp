@@ -10,10 +10,10 @@ namespace hairpin {
 
 /// Collects the sequences of one sensor into revolutions, as the driver would without a wire in
 /// between: for recordings of scans, and as the truth that decoded packets are compared with.
-class Revolution {
+class ScanRecorder {
  public:
   /// `epoch_us`: time that the sequences' times count from.
-  Revolution(const LidarSensorParams& params, int64_t epoch_us);
+  ScanRecorder(const LidarSensorParams& params, int64_t epoch_us);
   /// Adds a sequence; gives back the revolution that ends before it, where the head passes azimuth
   /// pi (backward).
   std::optional<lidar_scan_t> Add(const FiringSequence& sequence);
