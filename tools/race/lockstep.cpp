@@ -16,14 +16,19 @@ constexpr int64_t kConesAgeOfOne = 180'000;  // with one
 
 }  // namespace
 
-Lockstep::Lockstep(Transport& transport) : transport_(transport), bus_(transport, "lockstep", 1) {
+Lockstep::Lockstep(Transport& transport, SensorLevel level)
+    : transport_(transport), bus_(transport, "lockstep", 1) {
   Listen(channels::kVelocity);
   Listen(channels::kDriveCommand);
   Listen(channels::kAsState);
   Listen(channels::kLocalMap);
   Listen(channels::kTrack);
-  Listen(channels::kLidarFront);
-  Listen(channels::kLidarTop);
+  const bool raw = level == SensorLevel::kRaw;
+  if (raw) {
+    Listen(channels::kLidarFront);
+    Listen(channels::kLidarTop);
+    answers_[channels::kConesLidar.name];
+  }
   answers_[channels::kPipelineStatus.name];
   bus_.Subscribe(channels::kPipelineStatus, [this](const pipeline_status_t& message) {
     mode_ = static_cast<MapMode>(message.map_mode);
@@ -33,10 +38,9 @@ Lockstep::Lockstep(Transport& transport) : transport_(transport), bus_(transport
                  [this](const vehicle_t& message) { vehicle_utime_ = message.utime; });
   bus_.Subscribe(channels::kConesFusion,
                  [this](const cones_t& message) { observed_[Pipeline::kFusion] = message.utime; });
-  answers_[channels::kConesLidar.name];
-  bus_.Subscribe(channels::kConesLidar, [this](const cones_t& message) {
+  bus_.Subscribe(channels::kConesLidar, [this, raw](const cones_t& message) {
     observed_[Pipeline::kLidar] = message.utime;
-    Heard(channels::kConesLidar.name, message.utime);
+    if (raw) Heard(channels::kConesLidar.name, message.utime);
   });
   bus_.Subscribe(channels::kConesCamera,
                  [this](const cones_t& message) { observed_[Pipeline::kCamera] = message.utime; });

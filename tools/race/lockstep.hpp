@@ -8,6 +8,7 @@
 #include "common/bus.hpp"
 #include "common/clock.hpp"
 #include "common/map_mode.hpp"
+#include "tools/race/stack.hpp"
 
 namespace hairpin {
 
@@ -20,7 +21,7 @@ namespace hairpin {
 /// for until it speaks again: a dead daemon costs one such wait, not one a tick.
 class Lockstep {
  public:
-  explicit Lockstep(Transport& transport);
+  Lockstep(Transport& transport, SensorLevel level);
 
   /// Handles messages until the stack has answered the tick of time `utime`.
   void Await(int64_t utime);

@@ -158,7 +158,7 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
       stack = std::make_unique<ProcessStack>(options.stack, transport.url());
     }
     AwaitDaemons(StackDaemons(level), transport, *stack, stop);
-    lockstep.emplace(transport);
+    lockstep.emplace(transport, level);
   }
   Bus bus(transport, "simulator", 1);
   Simulator simulator(config.params, config.car, options.track, options.seed, bus);

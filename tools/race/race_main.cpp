@@ -65,7 +65,8 @@ void Define(CLI::App& app, Arguments& arguments) {
                "all daemons in one process, on memq://; repeatable to the byte");
   app.add_flag("--attach", arguments.attach,
                "drive with the daemons that run here already (systemd's) and their own configs")
-      ->excludes("--in-process");
+      ->excludes("--in-process")
+      ->excludes("--sensors");
   app.add_option("--set", arguments.overrides,
                  "DAEMON.KEY=VALUE in place of a config file's value (repeatable)")
       ->allow_extra_args(false);
