@@ -22,6 +22,8 @@ struct Arguments {
   int laps = 1;
   bool in_process = false;
   bool attach = false;
+  std::string sensors = "cones";
+  bool log_scans = false;
   double speed = -1.0;  // not given
   double speed_cap = 0.0;
   std::vector<std::string> faults;
@@ -41,10 +43,17 @@ void Define(CLI::App& app, Arguments& arguments) {
   app.add_option("--laps", arguments.laps, "laps to drive")
       ->check(CLI::Range(1, 50))
       ->capture_default_str();
+  app.add_option("--sensors", arguments.sensors,
+                 "what the simulator feeds: `cones`, as pipelines report them, or `raw`: both "
+                 "LiDARs' packets, to lidar_driver and lidar_cone_detector")
+      ->check(CLI::IsMember({"cones", "raw"}))
+      ->capture_default_str();
+  app.add_flag("--log-scans", arguments.log_scans,
+               "with raw sensors: LIDAR_FRONT and LIDAR_TOP into the log, 12 MB a second");
   app.add_option(
          "--fault", arguments.faults,
          "`SOURCE off at T s [for D s]`, counted from Go; SOURCE is a pipeline (fusion, lidar, "
-         "camera), a sensor or a daemon (repeatable)")
+         "camera; with raw sensors lidar_front, lidar_top), a sensor or a daemon (repeatable)")
       ->allow_extra_args(false);
   app.add_option("--speed-cap", arguments.speed_cap, "drive no faster than this [m/s]")
       ->check(CLI::Range(1.0, 40.0));
@@ -56,7 +65,8 @@ void Define(CLI::App& app, Arguments& arguments) {
                "all daemons in one process, on memq://; repeatable to the byte");
   app.add_flag("--attach", arguments.attach,
                "drive with the daemons that run here already (systemd's) and their own configs")
-      ->excludes("--in-process");
+      ->excludes("--in-process")
+      ->excludes("--sensors");
   app.add_option("--set", arguments.overrides,
                  "DAEMON.KEY=VALUE in place of a config file's value (repeatable)")
       ->allow_extra_args(false);
@@ -88,10 +98,14 @@ RaceOptions ToOptions(const Arguments& arguments) {
   options.in_process = arguments.in_process;
   options.attach = arguments.attach;
   options.speed = arguments.speed >= 0.0 ? arguments.speed : arguments.in_process ? 0.0 : 1.0;
-  const std::vector<std::string> sources = arguments.attach ? Simulator::Sources() : FaultSources();
+  options.log_scans = arguments.log_scans;
+  const SensorLevel level = arguments.sensors == "raw" ? SensorLevel::kRaw : SensorLevel::kCones;
+  const std::vector<std::string> sources =
+      arguments.attach ? Simulator::Sources() : FaultSources(level);
   for (const std::string& text : arguments.faults)
     options.faults.push_back(ParseFault(text, sources));
-  options.stack = {arguments.config_dir, arguments.program_dir, arguments.out, arguments.overrides};
+  options.stack = {arguments.config_dir, arguments.program_dir, arguments.out, arguments.overrides,
+                   level};
   options.stack.overrides.push_back("simulator.referee.laps=" + std::to_string(arguments.laps));
   options.stack.overrides.push_back("mission_manager.autocross_laps=" +
                                     std::to_string(arguments.laps));
