@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "common/clock.hpp"
+#include "hairpin/global_map_t.hpp"
 #include "hairpin/vehicle_t.hpp"
 
 namespace hairpin {
@@ -16,6 +17,8 @@ void Check(const MissionManagerParams& params) {
     if (!holds) throw std::invalid_argument(std::string("MissionManager: ") + what);
   };
   require(params.autocross_laps >= 1, "autocross_laps must be >= 1");
+  require(params.trackdrive_laps >= 1, "trackdrive_laps must be >= 1");
+  require(params.localisation_deadline > 0.0, "the deadline of GLOBAL_MAP must be > 0");
   require(params.standstill_speed > 0.0, "standstill_speed_mps must be > 0");
   require(params.standstill_time >= 0.0, "standstill_time_s must be >= 0");
 }
@@ -26,15 +29,13 @@ std::string MissionProblem(int32_t mission) {
   const char* name = nullptr;
   switch (mission) {
     case vehicle_t::MISSION_AUTOCROSS:
+    case vehicle_t::MISSION_TRACKDRIVE:
       return {};
     case vehicle_t::MISSION_ACCELERATION:
       name = "acceleration";
       break;
     case vehicle_t::MISSION_SKIDPAD:
       name = "skidpad";
-      break;
-    case vehicle_t::MISSION_TRACKDRIVE:
-      name = "trackdrive";
       break;
     case vehicle_t::MISSION_BRAKE_TEST:
       name = "brake test";
@@ -98,7 +99,23 @@ std::string MissionManager::SystemProblem(int64_t now) const {
   if (!supervision_) return "the watchdog was never heard";
   if (supervision_->blind) return "no perception pipeline is live: " + supervision_->reason;
   if (supervision_->stop) return "the watchdog asks for a stop: " + supervision_->reason;
+  if (mission_ == vehicle_t::MISSION_TRACKDRIVE) return LocalisationProblem(now);
   return {};
+}
+
+std::string MissionManager::LocalisationProblem(int64_t now) const {
+  if (!localisation_) return "trackdrive: GLOBAL_MAP was never heard";
+  if (SecondsBetween(localisation_->now, now) > params_.localisation_deadline) {
+    return "trackdrive: GLOBAL_MAP is stale";
+  }
+  switch (localisation_->phase) {
+    case global_map_t::PHASE_LOCALISED:
+      return {};
+    case global_map_t::PHASE_LOST:
+      return "trackdrive: the car does not find itself on the map";
+    default:
+      return "trackdrive: no map is loaded";
+  }
 }
 
 bool MissionManager::Stands(const VehicleInput& vehicle) {
@@ -108,13 +125,19 @@ bool MissionManager::Stands(const VehicleInput& vehicle) {
   return SecondsBetween(moved_utime_, vehicle.as.utime) >= params_.standstill_time;
 }
 
+int MissionManager::LapsToDrive() const {
+  return mission_ == vehicle_t::MISSION_TRACKDRIVE ? params_.trackdrive_laps
+                                                   : params_.autocross_laps;
+}
+
 bool MissionManager::MissionFinished() const {
-  return drive_ && drive_->laps.laps() >= params_.autocross_laps;
+  return drive_ && drive_->laps.laps() >= LapsToDrive();
 }
 
 std::optional<MissionReport> MissionManager::Update(const VehicleInput& vehicle, int64_t now) {
   if (vehicle.as.utime <= last_utime_) return std::nullopt;
   last_utime_ = vehicle.as.utime;
+  mission_ = vehicle.mission;
   AsInput input = vehicle.as;
   input.mission_problem = MissionProblem(vehicle.mission);
   input.system_problem = SystemProblem(now);
@@ -128,7 +151,7 @@ std::optional<MissionReport> MissionManager::Update(const VehicleInput& vehicle,
   }
   MissionReport report;
   report.state = state;
-  report.laps_to_drive = input.mission_problem.empty() ? params_.autocross_laps : 0;
+  report.laps_to_drive = input.mission_problem.empty() ? LapsToDrive() : 0;
   report.laps = drive_ ? drive_->laps.laps() : 0;
   report.mission_finished = MissionFinished();
   report.distance = drive_ ? history_.distance() - drive_->start_distance : 0.0;
@@ -142,7 +165,7 @@ std::string MissionManager::Reason() const {
   }
   if (!drive_->laps.started()) return "driving to the start line";
   return "driving lap " + std::to_string(drive_->laps.laps() + 1) + " of " +
-         std::to_string(params_.autocross_laps);
+         std::to_string(LapsToDrive());
 }
 
 }  // namespace hairpin
