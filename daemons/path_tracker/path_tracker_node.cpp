@@ -150,8 +150,8 @@ void LoadSteering(const Config& config, PathTrackerParams& params) {
 
 void LoadForces(const Config& config, PathTrackerParams& params) {
   WheelForcesParams& forces = params.forces;
-  forces.drag = config.Number("drag_n_per_mps2", {0.0, 10.0});
-  forces.rolling_resistance = config.Number("rolling_resistance_n", {0.0, 1000.0});
+  forces.drag = params.car.drag;
+  forces.rolling_resistance = params.car.rolling_resistance;
   forces.grip = config.Number("grip_mps2", {1.0, 30.0});
   forces.min_braking = config.Number("min_braking_mps2", {0.0, 20.0});
   forces.max_regeneration = config.Number("max_regeneration_n", {0.0, 10000.0});

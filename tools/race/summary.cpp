@@ -26,6 +26,24 @@ double Worst(const nlohmann::json& percents) {
   return worst;
 }
 
+// Of a trackdrive: each lap, and the autocross before it.
+std::string LapLines(const nlohmann::json& report) {
+  const auto& times = report.at("lap").at("lap_times_s");
+  std::string text;
+  if (times.size() > 1) {
+    text += "  laps       ";
+    for (const auto& time : times) text += " " + Figure(time, 2, "");
+    text += " s\n";
+  }
+  if (report.contains("autocross")) {
+    const auto& lap = report.at("autocross").at("lap");
+    text += "  autocross   " + Figure(lap.at("time_s"), 2, " s") + ", mean " +
+            Figure(lap.at("mean_speed_mps"), 1, " m/s") + "; the trackdrive is " +
+            Figure(report.at("speed_ratio"), 2, "") + " times as fast\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 bool IsClean(const RaceResult& result) {
@@ -50,6 +68,16 @@ RunContext ToContext(const RaceOptions& options, const RaceOutcome& outcome) {
   return context;
 }
 
+void AddAutocross(const nlohmann::json& autocross, nlohmann::json& trackdrive) {
+  trackdrive["autocross"] = {
+      {"lap", autocross.at("lap")}, {"map", autocross.at("map")}, {"seed", autocross.at("seed")}};
+  const auto& before = autocross.at("lap").at("mean_speed_mps");
+  const auto& after = trackdrive.at("lap").at("mean_speed_mps");
+  trackdrive["speed_ratio"] = before.is_number() && after.is_number() && before > 0.0
+                                  ? nlohmann::json(after.get<double>() / before.get<double>())
+                                  : nlohmann::json();
+}
+
 std::string Summary(const nlohmann::json& report, const std::string& out_dir) {
   const auto& lap = report.at("lap");
   const auto& map = report.at("map");
@@ -60,8 +88,8 @@ std::string Summary(const nlohmann::json& report, const std::string& out_dir) {
        << "  lap time    " << Figure(lap.at("time_s"), 2, " s") << ", mean "
        << Figure(lap.at("mean_speed_mps"), 1, " m/s") << ", max "
        << Figure(lap.at("max_speed_mps"), 1, " m/s") << '\n'
-       << "  penalties   " << lap.at("cones_hit") << " cones hit, " << lap.at("off_course")
-       << " times off course\n"
+       << LapLines(report) << "  penalties   " << lap.at("cones_hit") << " cones hit, "
+       << lap.at("off_course") << " times off course\n"
        << "  map         " << map.at("matched") << " cones matched, " << map.at("missed")
        << " missed, " << map.at("false") << " false, RMSE " << Figure(map.at("rmse_m"), 2, " m")
        << '\n'

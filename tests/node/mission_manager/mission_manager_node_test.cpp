@@ -58,6 +58,12 @@ class MissionManagerNodeTest : public testing::Test {
   }
 
   void PublishMapAndTrack() {
+    if (phase) {
+      global_map_t global{};
+      global.utime = utime - 100'000;
+      global.phase = *phase;
+      others.Publish(channels::kGlobalMap, global);
+    }
     local_map_t map{};
     map.utime = utime - 100'000;
     const Pose2 then = truth * Integrate({speed, 0.0, speed * Curvature()}, -0.1);
@@ -117,6 +123,7 @@ class MissionManagerNodeTest : public testing::Test {
   double distance = 0.0;
   Pose2 truth;
   bool velocity_runs = true;
+  std::optional<int32_t> phase;  // of GLOBAL_MAP; empty: none comes
 };
 
 TEST_F(MissionManagerNodeTest, AnswersEachVehicle) {
@@ -152,6 +159,44 @@ TEST_F(MissionManagerNodeTest, DrivesOneLapStopsAndFinishes) {
   EXPECT_EQ(state->state, as_state_t::STATE_DRIVING);
   Run(0.3);
   EXPECT_EQ(state->state, as_state_t::STATE_FINISHED);
+}
+
+TEST_F(MissionManagerNodeTest, IsNotReadyForATrackdriveBeforeTheCarIsLocalisedAndSaysWhy) {
+  vehicle.mission = vehicle_t::MISSION_TRACKDRIVE;
+  Run(3.0);
+  EXPECT_EQ(state->state, as_state_t::STATE_OFF);
+  EXPECT_EQ(state->reason, "trackdrive: GLOBAL_MAP was never heard");
+  phase = global_map_t::PHASE_MAPPING;
+  Run(0.2);
+  EXPECT_EQ(state->reason, "trackdrive: no map is loaded");
+  phase = global_map_t::PHASE_LOST;
+  Run(0.2);
+  EXPECT_EQ(state->reason, "trackdrive: the car does not find itself on the map");
+  phase = global_map_t::PHASE_LOCALISED;
+  Run(0.2);
+  EXPECT_EQ(state->state, as_state_t::STATE_READY);
+  phase.reset();
+  Run(0.7);
+  EXPECT_EQ(state->state, as_state_t::STATE_OFF);
+  EXPECT_EQ(state->reason, "trackdrive: GLOBAL_MAP is stale");
+}
+
+TEST_F(MissionManagerNodeTest, CountsTenLapsOfATrackdriveAlsoWhenTheLocalisationIsLost) {
+  vehicle.mission = vehicle_t::MISSION_TRACKDRIVE;
+  phase = global_map_t::PHASE_LOCALISED;
+  StartDriving();
+  EXPECT_EQ(state->laps_to_drive, 10);
+  speed = 10.0;
+  Run(1.0);
+  EXPECT_EQ(state->reason, "driving lap 1 of 10");
+  phase = global_map_t::PHASE_LOST;
+  Run(10 * 20.0 - 1.0);
+  EXPECT_EQ(state->state, as_state_t::STATE_DRIVING);
+  EXPECT_EQ(state->lap, 9);
+  EXPECT_FALSE(state->mission_finished);
+  Run(1.0);
+  EXPECT_EQ(state->lap, 10);
+  EXPECT_TRUE(state->mission_finished);
 }
 
 TEST_F(MissionManagerNodeTest, ResStopWhileDrivingIsAnEmergencyForGood) {
