@@ -3,6 +3,7 @@
 #include <ctime>
 #include <filesystem>
 #include <iomanip>
+#include <numeric>
 #include <sstream>
 
 #include "common/daemon.hpp"
@@ -63,7 +64,9 @@ RunContext ToContext(const RaceOptions& options, const RaceOutcome& outcome) {
   context.lap.max_speed_mps = outcome.result.max_speed_mps;
   context.lap.mean_speed_mps = outcome.result.mean_speed_mps;
   context.lap.lap_times_s = outcome.result.lap_times_s;
-  if (!outcome.result.lap_times_s.empty()) context.lap.time_s = outcome.result.lap_times_s.front();
+  if (const auto& laps = outcome.result.lap_times_s; !laps.empty()) {
+    context.lap.time_s = std::accumulate(laps.begin(), laps.end(), 0.0);
+  }
   context.lap.reason = outcome.result.reason;
   return context;
 }
