@@ -8,9 +8,9 @@
 namespace hairpin {
 namespace {
 
-constexpr double kMinBaseline = 3.0;       // m: a nearer pair says little of the turn
-constexpr size_t kMaxPoints = 40;          // bounds the work; the first ones count
-constexpr double kSamePlace = 1.0;         // m: two motions of the centre no farther apart are one
+constexpr double kMinBaseline = 3.0;  // m: a nearer pair says little of the turn
+constexpr size_t kMaxPoints = 40;     // bounds the work; the first ones count
+constexpr double kSamePlace = 1.0;    // m: two motions of the centre no farther apart are one
 constexpr int kRefinements = 3;
 
 using Points = std::vector<ConstellationPoint>;
@@ -99,7 +99,8 @@ bool IsBetter(const ConstellationMatch& a, const ConstellationMatch& b) {
 
 class Search {
  public:
-  Search(const Points& from, const Points& to, const Pose2& guess, const ConstellationParams& params)
+  Search(const Points& from, const Points& to, const Pose2& guess,
+         const ConstellationParams& params)
       : from_(from), to_(to), guess_(guess), params_(params), centre_(Centre(from)) {}
 
   std::optional<ConstellationMatch> Run() {

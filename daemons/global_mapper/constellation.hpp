@@ -37,10 +37,11 @@ struct ConstellationMatch {
 /// orange not each other.
 bool AreCompatible(ConeColour a, ConeColour b);
 
-/// Finds the place of a group of cones among others by its shape, whatever the drift within the bounds:
-/// every pair of cones is tried on every pair of equal distance, and the rigid motion that most cones
-/// agree with is refined in closed form. Empty where too few agree, or where another place, a cone
-/// spacing away say, is nearly as good: equally spaced cones along a straight look alike everywhere.
+/// Finds the place of a group of cones among others by its shape, whatever the drift within the
+/// bounds: every pair of cones is tried on every pair of equal distance, and the rigid motion that
+/// most cones agree with is refined in closed form. Empty where too few agree, or where another
+/// place, a cone spacing away say, is nearly as good: equally spaced cones along a straight look
+/// alike everywhere.
 std::optional<ConstellationMatch> MatchConstellation(const std::vector<ConstellationPoint>& from,
                                                      const std::vector<ConstellationPoint>& to,
                                                      const Pose2& guess,

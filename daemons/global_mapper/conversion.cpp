@@ -29,7 +29,7 @@ std::optional<LocalMapCone> ToCone(const local_cone_t& message, int64_t utime) {
   return cone;
 }
 
-global_cone_t ToMessage(const MapCone& cone) {
+global_cone_t ToMessage(const GlobalCone& cone) {
   global_cone_t message{};
   message.id = cone.id;
   message.x_m = cone.position.x();
@@ -55,13 +55,14 @@ ConvertedMap ToLocalMapInput(const local_map_t& message, size_t max_cones) {
   for (const local_cone_t& cone : message.cones) {
     const auto converted = ToCone(cone, message.utime);
     if (!converted)
-      return {std::nullopt, "a cone with a covariance, colour, existence or position that cannot be"};
+      return {std::nullopt,
+              "a cone with a covariance, colour, existence or position that cannot be"};
     map.cones.push_back(*converted);
   }
   return {map, {}};
 }
 
-global_map_t ToMessage(const GlobalMapEstimate& estimate, double solve_ms) {
+global_map_t ToMessage(const GlobalMapEstimate& estimate) {
   global_map_t message{};
   message.utime = estimate.utime;
   message.epoch = estimate.epoch;
@@ -75,8 +76,8 @@ global_map_t ToMessage(const GlobalMapEstimate& estimate, double solve_ms) {
   message.T_map_local[1] = estimate.T_map_local.y;
   message.T_map_local[2] = estimate.T_map_local.yaw;
   message.laps = estimate.laps;
-  message.solve_ms = solve_ms;
-  for (const MapCone& cone : estimate.cones) {
+  message.keyframes = estimate.keyframes;
+  for (const GlobalCone& cone : estimate.cones) {
     if (message.cones.size() < kMaxGlobalMapCones) message.cones.push_back(ToMessage(cone));
   }
   message.num_cones = static_cast<int32_t>(message.cones.size());

@@ -9,17 +9,18 @@
 
 namespace hairpin {
 
+inline constexpr size_t kMaxGlobalMapCones = 750;
+
 struct ConvertedMap {
   std::optional<LocalMapInput> map;
   std::string_view problem;  // where there is no map
 };
 
-/// Checked conversion from the wire. One bad cone spoils the message: a mapper that sends it is not to be
-/// believed on the rest. `max_cones`: more is nonsense.
+/// Checked conversion from the wire. One bad cone spoils the message: a mapper that sends it is not
+/// to be believed on the rest. `max_cones`: more is nonsense.
 ConvertedMap ToLocalMapInput(const local_map_t& message, size_t max_cones);
 
-/// At most kMaxCones cones go into a message, so that it stays under 60 kB.
-global_map_t ToMessage(const GlobalMapEstimate& estimate, double solve_ms);
-inline constexpr size_t kMaxGlobalMapCones = 750;
+/// At most kMaxGlobalMapCones cones go into a message, so that it stays under 60 kB.
+global_map_t ToMessage(const GlobalMapEstimate& estimate);
 
 }  // namespace hairpin

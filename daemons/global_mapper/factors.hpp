@@ -6,8 +6,8 @@
 
 namespace hairpin {
 
-/// S with r = S e and r^T r = e^T P^-1 e: S = L^T, where P^-1 = L L^T. (L e itself would be right for
-/// diagonal covariances only.) Throws std::invalid_argument where P is not positive definite.
+/// S with r = S e and r^T r = e^T P^-1 e: S = L^T, where P^-1 = L L^T. (L e itself would be right
+/// for diagonal covariances only.) Throws std::invalid_argument where P is not positive definite.
 Eigen::Matrix3d SqrtInformation(const Eigen::Matrix3d& covariance);
 Eigen::Matrix2d SqrtInformation(const Eigen::Matrix2d& covariance);
 
@@ -35,8 +35,8 @@ void LandmarkResidual(const LandmarkMeasurement& measurement, const double* pose
                       const double* landmark, double* residual, double* by_pose,
                       double* by_landmark);
 
-/// Cauchy's loss rho(s) = c^2 ln(1 + s / c^2) of a squared residual; its slope is the weight that the
-/// residual keeps. c = 0: no loss, slope 1.
+/// Cauchy's loss rho(s) = c^2 ln(1 + s / c^2) of a squared residual; its slope is the weight that
+/// the residual keeps. c = 0: no loss, slope 1.
 double CauchyWeight(double squared_residual, double scale);
 
 }  // namespace hairpin

@@ -8,10 +8,10 @@
 namespace hairpin {
 namespace {
 
-constexpr double kGateMargin = 2.0;    // m beside the gate's cones that still is through it
-constexpr double kLostSpeed = 5.0;     // m/s, of an unknown motion: the sigma that is assumed
-constexpr double kLostYawRate = 0.3;   // rad/s
-constexpr double kMaxJump = 3.0;       // m past the line at one step: the estimate has jumped
+constexpr double kGateMargin = 2.0;   // m beside the gate's cones that still is through it
+constexpr double kLostSpeed = 5.0;    // m/s, of an unknown motion: the sigma that is assumed
+constexpr double kLostYawRate = 0.3;  // rad/s
+constexpr double kMaxJump = 3.0;      // m past the line at one step: the estimate has jumped
 
 /// Of a car of which nothing is known for `seconds` but that it goes no faster than usual.
 Motion UnknownMotion(double seconds) {
@@ -46,8 +46,8 @@ std::string_view GlobalMapper::AddVelocity(int64_t utime, const Twist2& velocity
   return odometry_.Add(utime, velocity, covariance);
 }
 
-/// Within an epoch the local map's own frame says how the car moved, across a gap of our own making too;
-/// VELOCITY says how well, and bridges two epochs.
+/// Within an epoch the local map's own frame says how the car moved, across a gap of our own making
+/// too; VELOCITY says how well, and bridges two epochs.
 Motion GlobalMapper::MotionSince(const Seen& before, const LocalMapInput& map) const {
   const auto integrated = odometry_.Between(before.utime, map.utime);
   const double seconds = SecondsBetween(before.utime, map.utime);
@@ -103,6 +103,7 @@ GlobalMapper::Outcome GlobalMapper::Map(const LocalMapInput& map) {
   estimate.phase = map_.loop_closed() ? MapPhase::kLoopClosed : MapPhase::kMapping;
   estimate.pose_covariance = map_.last_covariance() + motion.covariance;
   estimate.cones = map_.Cones();
+  estimate.keyframes = static_cast<int>(map_.graph().num_poses());
   CountLapsOfMap(was_closed, estimate.T_map_base,
                  map_.odometer() + motion.T_from_to.position().norm());
   estimate.laps = laps_;
@@ -127,13 +128,13 @@ void GlobalMapper::CountLapsOfMap(bool was_closed, const Pose2& T_map_base, doub
 }
 
 void GlobalMapper::CountLaps(const Pose2& T_map_base, double odometer,
-                             const std::vector<MapCone>& cones) {
+                             const std::vector<GlobalCone>& cones) {
   // Without a gate the line goes across where the map began.
-  const MapGate gate = FindMapGate(cones).value_or(MapGate{{0.0, kGateMargin}, {0.0, -kGateMargin}});
+  const MapGate gate =
+      FindMapGate(cones).value_or(MapGate{{0.0, kGateMargin}, {0.0, -kGateMargin}});
   const double past = gate.Past(T_map_base.position());
   const bool through = gate.Spans(T_map_base.position(), kGateMargin);
-  const bool crossed =
-      past_gate_ && *past_gate_ < 0.0 && past >= 0.0 && past < kMaxJump && through;
+  const bool crossed = past_gate_ && *past_gate_ < 0.0 && past >= 0.0 && past < kMaxJump && through;
   past_gate_ = past;
   if (!crossed || odometer - lap_odometer_ < params_.min_lap_distance) return;
   ++laps_;

@@ -26,12 +26,12 @@ struct GlobalMapperParams {
 
 /// A finished map, as it was saved: cones, and about where a car starts in it.
 struct KnownMap {
-  std::vector<MapCone> cones;
+  std::vector<GlobalCone> cones;
   Pose2 start;
 };
 
-/// The global map from local maps and velocities, or the car's place in one that is known already. Its
-/// frame is base at the first local map, or the known map's. [paper III-C, global map]
+/// The global map from local maps and velocities, or the car's place in one that is known already.
+/// Its frame is base at the first local map, or the known map's. [paper III-C, global map]
 class GlobalMapper {
  public:
   /// Throws std::invalid_argument for bad parameters.
@@ -48,7 +48,8 @@ class GlobalMapper {
     std::vector<MapRecord> records;  // for Replay() in a later life
     std::string_view refused;        // why; empty where it was used
   };
-  /// Every local map gives an estimate; those that stand far enough from the last keyframe become one.
+  /// Every local map gives an estimate; those that stand far enough from the last keyframe become
+  /// one.
   Outcome AddLocalMap(const LocalMapInput& map);
 
   /// Rebuilds the map from what was recorded of it, before anything else comes in.
@@ -69,7 +70,7 @@ class GlobalMapper {
   Outcome Map(const LocalMapInput& map);
   GlobalMapEstimate Estimate(const LocalMapInput& map, const Pose2& T_map_base) const;
   void CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer);
-  void CountLaps(const Pose2& T_map_base, double odometer, const std::vector<MapCone>& cones);
+  void CountLaps(const Pose2& T_map_base, double odometer, const std::vector<GlobalCone>& cones);
 
   GlobalMapperParams params_;
   VelocityOdometry odometry_;

@@ -41,7 +41,8 @@ void InformationPrior::Marginalise(const double* oldest, const double* next,
   for (const Sighting& sighting : sightings) AddSlot(sighting.landmark, sighting.position);
   const Eigen::Index size = H_.rows();
   // Everything that touches the oldest pose: its own block, its row to the rest, its vector.
-  // Linear factors are r = r0 + J (x - x0), with d = x - reference: r = (r0 + J (reference - x0)) + J d.
+  // Linear factors are r = r0 + J (x - x0), with d = x - reference: r = (r0 + J (reference - x0)) +
+  // J d.
   Eigen::Matrix3d H00 = H_.topLeftCorner<3, 3>();
   Eigen::Vector3d b0 = b_.head<3>();
   Eigen::MatrixXd row = H_.topRows(3);
@@ -122,7 +123,8 @@ void InformationPrior::Merge(size_t landmark, size_t into) {
 
 std::optional<InformationPrior::Conditional> InformationPrior::Condition(
     const std::vector<Eigen::Index>& kept, const Eigen::VectorXd& difference) const {
-  // The gradient at the present difference, of which the kept variables' own share is left to solve.
+  // The gradient at the present difference, of which the kept variables' own share is left to
+  // solve.
   Conditional conditional;
   conditional.information = H_(kept, kept);
   const Eigen::VectorXd gradient = H_(kept, Eigen::all) * difference - b_(kept);

@@ -10,9 +10,9 @@
 namespace hairpin {
 
 /// What poses that left the graph have to say about the landmarks that they saw and about the pose
-/// that followed them: the quadratic cost 1/2 d^T H d - b^T d, with d the difference of (oldest pose,
-/// landmarks) from a reference. Made by Schur complement of one pose after the other [Sibley 2010,
-/// "Sliding window filter"], so that laps cost no more from one to the next.
+/// that followed them: the quadratic cost 1/2 d^T H d - b^T d, with d the difference of (oldest
+/// pose, landmarks) from a reference. Made by Schur complement of one pose after the other [Sibley
+/// 2010, "Sliding window filter"], so that laps cost no more from one to the next.
 class InformationPrior {
  public:
   /// Holds the oldest pose at `pose` with this variance of x, y [m^2] and yaw [rad^2].
@@ -41,8 +41,8 @@ class InformationPrior {
     Eigen::MatrixXd information;
     Eigen::VectorXd mean;  // absolute
   };
-  /// Variables: the oldest pose if `with_pose`, then `landmarks`, each of which it knows. `values(l)`
-  /// is where landmark l is now. Empty where the information is singular.
+  /// Variables: the oldest pose if `with_pose`, then `landmarks`, each of which it knows.
+  /// `values(l)` is where landmark l is now. Empty where the information is singular.
   template <class Values>
   std::optional<Conditional> Condition(bool with_pose, const std::vector<size_t>& landmarks,
                                        const double* pose, const Values& values) const;
@@ -58,8 +58,8 @@ class InformationPrior {
   Eigen::MatrixXd H_;
   Eigen::VectorXd b_;
   Eigen::VectorXd reference_;
-  std::vector<size_t> landmarks_;            // by slot
-  std::vector<Eigen::Index> first_of_;       // row by landmark; -1: none
+  std::vector<size_t> landmarks_;       // by slot
+  std::vector<Eigen::Index> first_of_;  // row by landmark; -1: none
 };
 
 template <class Values>

@@ -69,8 +69,7 @@ void LandmarkTable::Merge(int64_t landmark, int64_t into) {
 
 void LandmarkTable::Remove(int64_t landmark) {
   landmarks_.at(static_cast<size_t>(landmark)).alive = false;
-  std::erase_if(of_local_,
-                [&](const auto& entry) { return entry.second.landmark == landmark; });
+  std::erase_if(of_local_, [&](const auto& entry) { return entry.second.landmark == landmark; });
 }
 
 }  // namespace hairpin

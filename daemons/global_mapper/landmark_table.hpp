@@ -18,7 +18,8 @@ struct LandmarkInfo {
   int num_sightings = 0;  // keyframes
   double first_seen = 0.0;
   double last_seen = 0.0;
-  Eigen::Matrix2d drift = Eigen::Matrix2d::Zero();  // covariance of the pose that first saw it, there
+  Eigen::Matrix2d drift =
+      Eigen::Matrix2d::Zero();  // covariance of the pose that first saw it, there
 
   /// The most probable class of what was observed.
   ConeColour colour() const;
@@ -30,7 +31,8 @@ class LandmarkTable {
   std::vector<LandmarkInfo>& landmarks() { return landmarks_; }
   const std::vector<LandmarkInfo>& landmarks() const { return landmarks_; }
 
-  /// Forgets which local cone is which where the epoch has changed, and those that are not in the map.
+  /// Forgets which local cone is which where the epoch has changed, and those that are not in the
+  /// map.
   void Follow(const LocalMapInput& map);
   std::optional<int64_t> Find(int64_t local_id) const;
   /// True if a local cone of the present map is this landmark.

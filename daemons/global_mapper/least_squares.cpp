@@ -93,7 +93,8 @@ ceres::Solver::Options SolverOptions(const SolverParams& params) {
   options.parameter_tolerance = 1e-9;
   options.initial_trust_region_radius = 1e8;  // begins as Gauss-Newton
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  // Graphs of this size are sparse throughout: simplicial factors take half the time of supernodal ones.
+  // Graphs of this size are sparse throughout: simplicial factors take half the time of supernodal
+  // ones.
   options.sparse_linear_algebra_library_type = ceres::CX_SPARSE;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;

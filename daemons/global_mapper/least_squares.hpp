@@ -38,13 +38,13 @@ struct LeastSquaresProblem {
 };
 
 struct SolverParams {
-  int max_iterations = 0;     // > 0; the only bound on the time of a solve
-  double loss_scale = 0.0;    // of Cauchy's loss on whitened sightings; 0: none
-  double tolerance = 1e-6;    // relative decrease of the cost at which it is done
+  int max_iterations = 0;   // > 0; the only bound on the time of a solve
+  double loss_scale = 0.0;  // of Cauchy's loss on whitened sightings; 0: none
+  double tolerance = 1e-6;  // relative decrease of the cost at which it is done
 };
 
-/// Levenberg-Marquardt by Ceres, one thread. Returns false, with the values undefined, where it failed.
-/// [Agarwal, Mierle: Ceres Solver]
+/// Levenberg-Marquardt by Ceres, one thread. Returns false, with the values undefined, where it
+/// failed. [Agarwal, Mierle: Ceres Solver]
 bool Solve(LeastSquaresProblem& problem, const SolverParams& params);
 
 }  // namespace hairpin

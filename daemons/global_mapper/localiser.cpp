@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPlacedPositionSigma = 0.2;  // m: what the shape of the cones leaves open
 constexpr double kPlacedYawSigma = 0.03;      // rad
-constexpr double kFarAround = 30.0;           // m about the expected place that cones are compared in
+constexpr double kFarAround = 30.0;  // m about the expected place that cones are compared in
 
 using Jacobian = Eigen::Matrix<double, 2, 3>;
 
@@ -40,7 +40,8 @@ void LocaliserParams::Validate() const {
   RequireGlobalMap(max_unmatched > 0, "localisation max_unmatched must be > 0");
 }
 
-Localiser::Localiser(const LocaliserParams& params, std::vector<MapCone> cones, const Pose2& start)
+Localiser::Localiser(const LocaliserParams& params, std::vector<GlobalCone> cones,
+                     const Pose2& start)
     : params_(params), cones_(std::move(cones)), pose_(start) {
   params.Validate();
   covariance_ = std::pow(params.constellation.max_translation, 2) * Eigen::Matrix3d::Identity();
@@ -86,28 +87,28 @@ bool Localiser::Place(const LocalMapInput& map) {
     seen.push_back({map.T_local_base.Inverse() * cone.position, MostProbable(cone.colour)});
   }
   std::vector<ConstellationPoint> known;
-  for (const MapCone& cone : cones_) {
+  for (const GlobalCone& cone : cones_) {
     if ((cone.position - pose_.position()).norm() <= kFarAround)
       known.push_back({cone.position, MostProbable(cone.colour)});
   }
   const auto match = MatchConstellation(seen, known, pose_, params_.constellation);
   if (!match) return false;
   pose_ = match->T_to_from;
-  covariance_ = Eigen::Vector3d(std::pow(kPlacedPositionSigma, 2), std::pow(kPlacedPositionSigma, 2),
-                                std::pow(kPlacedYawSigma, 2))
+  covariance_ = Eigen::Vector3d(std::pow(kPlacedPositionSigma, 2),
+                                std::pow(kPlacedPositionSigma, 2), std::pow(kPlacedYawSigma, 2))
                     .asDiagonal();
   return true;
 }
 
-Eigen::Matrix2d Localiser::Noise(const LocalMapCone& cone, const MapCone& landmark,
+Eigen::Matrix2d Localiser::Noise(const LocalMapCone& cone, const GlobalCone& landmark,
                                  const Pose2& T_map_local) const {
   return params_.covariance_inflation * RotateCovariance(cone.covariance, T_map_local.yaw) +
          params_.cone_sigma * params_.cone_sigma * Eigen::Matrix2d::Identity() +
          landmark.covariance;
 }
 
-std::vector<Localiser::Pairing> Localiser::Associate(
-    const std::vector<const LocalMapCone*>& cones, const LocalMapInput& map) const {
+std::vector<Localiser::Pairing> Localiser::Associate(const std::vector<const LocalMapCone*>& cones,
+                                                     const LocalMapInput& map) const {
   struct Candidate {
     double chi2;
     size_t cone;

@@ -10,7 +10,7 @@
 namespace hairpin {
 
 /// A cone of the global map.
-struct MapCone {
+struct GlobalCone {
   int64_t id = 0;                                            // stays with it for the whole map
   Eigen::Vector2d position = Eigen::Vector2d::Zero();        // map [m]
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  // m^2
@@ -31,7 +31,8 @@ struct GlobalMapEstimate {
   Eigen::Matrix3d pose_covariance = Eigen::Matrix3d::Identity();
   Pose2 T_map_local;
   int laps = 0;
-  std::vector<MapCone> cones;
+  int keyframes = 0;  // in the graph
+  std::vector<GlobalCone> cones;
 };
 
 /// The cones that a local map holds, as global_mapper needs them.

@@ -22,7 +22,7 @@ std::string Pair(const Eigen::Vector2d& point) {
   return text.str();
 }
 
-void WriteCone(const MapCone& cone, std::ostream& out) {
+void WriteCone(const GlobalCone& cone, std::ostream& out) {
   const Eigen::Matrix2d& P = cone.covariance;
   out << "  - {id: " << cone.id << ", position_m: " << Pair(cone.position)
       << ", colour: " << NameOf(MostProbable(cone.colour)) << std::scientific
@@ -80,9 +80,10 @@ class Reader {
     return {numbers[0], numbers[1]};
   }
 
-  MapCone Cone(const YAML::Node& node) const {
-    RequireKeys(node, {"id", "position_m", "colour", "covariance_m2", "probability", "observations"});
-    MapCone cone;
+  GlobalCone Cone(const YAML::Node& node) const {
+    RequireKeys(node,
+                {"id", "position_m", "colour", "covariance_m2", "probability", "observations"});
+    GlobalCone cone;
     cone.id = Value<int64_t>(node["id"], "id");
     cone.position = Point(node["position_m"], "position_m");
     const auto P = Numbers(node["covariance_m2"], 3, "covariance_m2", kMaxCoordinate);
@@ -109,18 +110,20 @@ class Reader {
 
 std::string ToYaml(const MapFile& map) {
   std::ostringstream out;
-  out << "# A track as global_mapper mapped it. Frame: map, the car's pose where the mapping began is `start`.\n"
+  out << "# A track as global_mapper mapped it. Frame: map, the car's pose where the mapping began "
+         "is `start`.\n"
       << "hairpin_map: " << kVersion << "\nsession: " << map.session << "\nutime: " << map.utime
-      << "\nlaps: " << map.laps << std::fixed << std::setprecision(4) << "\nstart: ["
-      << map.start.x << ", " << map.start.y << ", " << map.start.yaw << "]  # x_m, y_m, yaw_rad\n"
+      << "\nlaps: " << map.laps << std::fixed << std::setprecision(4) << "\nstart: [" << map.start.x
+      << ", " << map.start.y << ", " << map.start.yaw << "]  # x_m, y_m, yaw_rad\n"
       << "finish_line_m: ";
   if (map.gate) {
     out << "[" << Pair(map.gate->left) << ", " << Pair(map.gate->right) << "]  # left, right end\n";
   } else {
     out << "null  # no gate of large orange cones was mapped\n";
   }
-  out << "# probability: unknown, blue, yellow, orange, orange_large; covariance: xx, xy, yy\ncones:\n";
-  for (const MapCone& cone : map.cones) WriteCone(cone, out);
+  out << "# probability: unknown, blue, yellow, orange, orange_large; covariance: xx, xy, "
+         "yy\ncones:\n";
+  for (const GlobalCone& cone : map.cones) WriteCone(cone, out);
   return out.str();
 }
 
@@ -152,8 +155,8 @@ MapFile ParseMapFile(const std::string& text, const std::string& file) {
     throw MapFileError(file + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }
   const Reader reader(file);
-  reader.RequireKeys(root, {"hairpin_map", "session", "utime", "laps", "start", "finish_line_m",
-                            "cones"});
+  reader.RequireKeys(
+      root, {"hairpin_map", "session", "utime", "laps", "start", "finish_line_m", "cones"});
   if (reader.Value<int>(root["hairpin_map"], "hairpin_map") != kVersion)
     reader.Refuse(root["hairpin_map"], "another version of the format");
   MapFile map;
@@ -165,10 +168,12 @@ MapFile ParseMapFile(const std::string& text, const std::string& file) {
   const YAML::Node line = root["finish_line_m"];
   if (!line.IsNull()) {
     if (!line.IsSequence() || line.size() != 2) reader.Refuse(line, "finish_line_m has two ends");
-    map.gate = MapGate{reader.Point(line[0], "finish_line_m"), reader.Point(line[1], "finish_line_m")};
+    map.gate =
+        MapGate{reader.Point(line[0], "finish_line_m"), reader.Point(line[1], "finish_line_m")};
   }
   const YAML::Node cones = root["cones"];
-  if (!cones.IsSequence() || cones.size() > kMaxCones) reader.Refuse(cones, "cones is no list, or too long");
+  if (!cones.IsSequence() || cones.size() > kMaxCones)
+    reader.Refuse(cones, "cones is no list, or too long");
   for (const auto& cone : cones) map.cones.push_back(reader.Cone(cone));
   return map;
 }

@@ -24,13 +24,14 @@ struct MapFile {
   int64_t session = 0;  // boot id of the global_mapper that made it: names the run
   int64_t utime = 0;    // of the local map after which it was written
   int laps = 0;
-  Pose2 start;                  // T_map_base where the map began
-  std::optional<MapGate> gate;  // start/finish line; none where no gate of large orange cones is mapped
-  std::vector<MapCone> cones;
+  Pose2 start;  // T_map_base where the map began
+  std::optional<MapGate>
+      gate;  // start/finish line; none where no gate of large orange cones is mapped
+  std::vector<GlobalCone> cones;
 };
 
-/// YAML for people and machines; positions to 0.1 mm, all the rest too. Written beside `file` and renamed,
-/// so that there is never half a map. Throws std::runtime_error where it cannot write.
+/// YAML for people and machines; positions to 0.1 mm, all the rest too. Written beside `file` and
+/// renamed, so that there is never half a map. Throws std::runtime_error where it cannot write.
 void SaveMapFile(const MapFile& map, const std::string& file);
 std::string ToYaml(const MapFile& map);
 

@@ -17,9 +17,9 @@ struct SightingRecord {
   int64_t local_id = 0;
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  // base [m]
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
-  ColourDistribution colour{};  // what it adds to the landmark's sum
-  int32_t num_observations = 0;       // what it adds to the landmark's count
-  int32_t local_observations = 0;     // of the local cone in all
+  ColourDistribution colour{};     // what it adds to the landmark's sum
+  int32_t num_observations = 0;    // what it adds to the landmark's count
+  int32_t local_observations = 0;  // of the local cone in all
 };
 
 /// A keyframe of the map. Landmarks are numbered in the order of their first sightings.

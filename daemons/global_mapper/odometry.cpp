@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kGap = 0.1;  // s: a longer interval between velocities is a gap
 
-/// How an error of the pose at the start of a step of `offset` moves its end, all in the first frame.
+/// How an error of the pose at the start of a step of `offset` moves its end, all in the first
+/// frame.
 Eigen::Matrix3d Lever(const Eigen::Vector2d& offset) {
   Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
   F(0, 2) = -offset.y();

@@ -18,26 +18,28 @@ struct Motion {
 };
 
 struct OdometryParams {
-  double history = 0.0;               // s of velocity kept, > 0
-  double error_time = 0.0;            // s, > 0: how long an error of VELOCITY lasts
-  double position_sigma = 0.0;        // m per sqrt(m) driven, >= 0: what VELOCITY's covariance leaves out
-  double yaw_sigma = 0.0;             // rad per sqrt(m), >= 0
-  double min_position_sigma = 0.0;    // m of any motion, > 0
-  double min_yaw_sigma = 0.0;         // rad, > 0
-  double gap_acceleration = 0.0;      // m/s^2, change of acceleration that a gap of VELOCITY may hide, >= 0
+  double history = 0.0;         // s of velocity kept, > 0
+  double error_time = 0.0;      // s, > 0: how long an error of VELOCITY lasts
+  double position_sigma = 0.0;  // m per sqrt(m) driven, >= 0: what VELOCITY's covariance leaves out
+  double yaw_sigma = 0.0;       // rad per sqrt(m), >= 0
+  double min_position_sigma = 0.0;  // m of any motion, > 0
+  double min_yaw_sigma = 0.0;       // rad, > 0
+  double gap_acceleration =
+      0.0;  // m/s^2, change of acceleration that a gap of VELOCITY may hide, >= 0
   double gap_yaw_acceleration = 0.0;  // rad/s^2, >= 0
 
   /// Throws std::invalid_argument naming parameter, relation and bound.
   void Validate() const;
 };
 
-/// The covariance that `motion` (of a car that drove `distance` [m]) has without anything known of its
-/// velocities: the params' growth by distance, and the floor.
+/// The covariance that `motion` (of a car that drove `distance` [m]) has without anything known of
+/// its velocities: the params' growth by distance, and the floor.
 Eigen::Matrix3d CovarianceByDistance(const OdometryParams& params, const Pose2& motion);
 
-/// Integrates VELOCITY and its covariance between any two times of the last seconds. An error of the
-/// velocity is taken to last `error_time`: a sample of dt counts with dt * 2 error_time of its
-/// covariance, the variance of an integrated first-order Gauss-Markov process over times much longer.
+/// Integrates VELOCITY and its covariance between any two times of the last seconds. An error of
+/// the velocity is taken to last `error_time`: a sample of dt counts with dt * 2 error_time of its
+/// covariance, the variance of an integrated first-order Gauss-Markov process over times much
+/// longer.
 class VelocityOdometry {
  public:
   explicit VelocityOdometry(const OdometryParams& params);
@@ -45,7 +47,8 @@ class VelocityOdometry {
   /// Returns why it was refused, empty if it was not.
   std::string_view Add(int64_t utime, const Twist2& velocity, const Eigen::Matrix3d& covariance);
 
-  /// Empty where a time is not within the history (or up to 0.1 s past it), or `to` is before `from`.
+  /// Empty where a time is not within the history (or up to 0.1 s past it), or `to` is before
+  /// `from`.
   std::optional<Motion> Between(int64_t from_utime, int64_t to_utime) const;
 
  private:

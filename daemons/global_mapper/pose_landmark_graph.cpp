@@ -200,8 +200,7 @@ void PoseLandmarkGraph::RefreezeAll() {
 void PoseLandmarkGraph::AddTerms(size_t from, LeastSquaresProblem& problem) {
   for (size_t i = from - first_pose_; i < poses_.size(); ++i) {
     PoseNode& pose = poses_[i];
-    if (i > 0)
-      problem.odometry.push_back({poses_[i - 1].x.data(), pose.x.data(), &pose.odometry});
+    if (i > 0) problem.odometry.push_back({poses_[i - 1].x.data(), pose.x.data(), &pose.odometry});
     for (const Sighting& sighting : pose.sightings) {
       problem.sightings.push_back(
           {pose.x.data(), landmarks_[sighting.landmark].x.data(), &sighting.measurement});
@@ -220,8 +219,7 @@ void PoseLandmarkGraph::AddPrior(bool with_pose, const std::vector<size_t>& land
                        [this](size_t landmark) { return landmarks_[landmark].x.data(); });
   if (!conditional) return;
   problem.dense_mean = conditional->mean;
-  problem.dense_sqrt_information =
-      Eigen::LLT<Eigen::MatrixXd>(conditional->information).matrixU();
+  problem.dense_sqrt_information = Eigen::LLT<Eigen::MatrixXd>(conditional->information).matrixU();
   if (with_pose) {
     problem.dense_blocks.push_back(poses_.front().x.data());
     problem.dense_sizes.push_back(3);
@@ -254,7 +252,8 @@ bool PoseLandmarkGraph::SolveWindow() {
   problem.constant.push_back(poses_[from - 1 - first_pose_].x.data());
   std::set<size_t> seen;
   for (size_t i = from; i < end_pose(); ++i) {
-    for (const Sighting& sighting : poses_[i - first_pose_].sightings) seen.insert(sighting.landmark);
+    for (const Sighting& sighting : poses_[i - first_pose_].sightings)
+      seen.insert(sighting.landmark);
   }
   for (const size_t number : seen) {
     LandmarkNode& landmark = landmarks_[number];
@@ -305,8 +304,7 @@ std::vector<Eigen::Matrix2d> PoseLandmarkGraph::LandmarkCovariances() const {
   copy.AddPose(nowhere);
   copy.MarginaliseOldest();
   const Eigen::MatrixXd& H = copy.prior_.information();
-  const Eigen::MatrixXd covariance =
-      H.ldlt().solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
+  const Eigen::MatrixXd covariance = H.ldlt().solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
   std::vector<Eigen::Matrix2d> covariances(landmarks_.size(), Eigen::Matrix2d::Zero());
   Eigen::Index first = 3;
   for (const size_t landmark : copy.prior_.landmarks()) {

@@ -23,13 +23,13 @@ struct GraphParams {
   void Validate() const;
 };
 
-/// Poses of base and landmarks in map, tied by odometry and sightings: pose-landmark GraphSLAM [Thrun
-/// 2006; paper III-C]. The first pose is held where it is put. Poses are numbered from 0 on, for good;
-/// the oldest can be marginalised into a prior on the landmarks, which bounds the graph.
+/// Poses of base and landmarks in map, tied by odometry and sightings: pose-landmark GraphSLAM
+/// [Thrun 2006; paper III-C]. The first pose is held where it is put. Poses are numbered from 0 on,
+/// for good; the oldest can be marginalised into a prior on the landmarks, which bounds the graph.
 ///
-/// SolveWindow() moves the newest poses and what they see, while older poses stand: what these say of a
-/// landmark is kept as one Gaussian for each (`frozen`), so that its cost does not grow. SolveAll() moves
-/// everything. Both descend the same cost.
+/// SolveWindow() moves the newest poses and what they see, while older poses stand: what these say
+/// of a landmark is kept as one Gaussian for each (`frozen`), so that its cost does not grow.
+/// SolveAll() moves everything. Both descend the same cost.
 class PoseLandmarkGraph {
  public:
   explicit PoseLandmarkGraph(const GraphParams& params, const Pose2& first_pose = {});
@@ -68,8 +68,8 @@ class PoseLandmarkGraph {
 
   /// Squared whitened residual of a measurement from the newest pose.
   double SquaredResidual(size_t landmark, const LandmarkMeasurement& measurement) const;
-  /// Root mean square distance [m] between where poses from `from` on saw the landmark and where it is;
-  /// empty where none did.
+  /// Root mean square distance [m] between where poses from `from` on saw the landmark and where it
+  /// is; empty where none did.
   std::optional<double> SightingRms(size_t landmark, size_t from) const;
   /// Half the sum of squared whitened residuals of all odometry and sightings in the graph, without
   /// any loss function; the prior of marginalised poses is not in it.

@@ -11,8 +11,8 @@ Eigen::Vector2d Across(const MapGate& gate) { return (gate.left - gate.right).no
 }  // namespace
 
 double MapGate::Past(const Eigen::Vector2d& point) const {
-  const Eigen::Vector2d left = Across(*this);
-  return Eigen::Vector2d(left.y(), -left.x()).dot(point - right);
+  const Eigen::Vector2d across = Across(*this);
+  return Eigen::Vector2d(across.y(), -across.x()).dot(point - right);
 }
 
 bool MapGate::Spans(const Eigen::Vector2d& point, double margin) const {
@@ -20,11 +20,11 @@ bool MapGate::Spans(const Eigen::Vector2d& point, double margin) const {
   return along >= -margin && along <= (left - right).norm() + margin;
 }
 
-std::optional<MapGate> FindMapGate(const std::vector<MapCone>& cones) {
+std::optional<MapGate> FindMapGate(const std::vector<GlobalCone>& cones) {
   MapGate gate;
   int num_left = 0;
   int num_right = 0;
-  for (const MapCone& cone : cones) {
+  for (const GlobalCone& cone : cones) {
     if (ProbabilityOf(cone.colour, ConeColour::kOrangeLarge) < kMinMass) continue;
     if (cone.position.norm() > kMaxDistance) continue;
     (cone.position.y() > 0.0 ? gate.left : gate.right) += cone.position;

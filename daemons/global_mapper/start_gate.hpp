@@ -19,8 +19,8 @@ struct MapGate {
   bool Spans(const Eigen::Vector2d& point, double margin) const;
 };
 
-/// Through the large orange cones ahead of the map's start (pose zero), at most 30 m away; empty where the
-/// map holds none on one of the sides.
-std::optional<MapGate> FindMapGate(const std::vector<MapCone>& cones);
+/// Through the large orange cones ahead of the map's start (pose zero), at most 30 m away; empty
+/// where the map holds none on one of the sides.
+std::optional<MapGate> FindMapGate(const std::vector<GlobalCone>& cones);
 
 }  // namespace hairpin

@@ -66,8 +66,8 @@ bool TrackMap::IsKeyframe(const Pose2& T_last_base) const {
 }
 
 TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion) {
-  KeyframeRecord keyframe{map.utime,          map.epoch,         map.T_local_base, {},
-                          motion.T_from_to, motion.covariance, {}};
+  KeyframeRecord keyframe{map.utime,         map.epoch, map.T_local_base, {}, motion.T_from_to,
+                          motion.covariance, {}};
   if (!empty()) keyframe.T_map_base = last_pose() * motion.T_from_to;
   table_.Follow(map);
   keyframe.sightings = Associate(map, keyframe.T_map_base);
@@ -121,9 +121,8 @@ void TrackMap::Apply(const KeyframeRecord& keyframe) {
                        {sighting.position, SqrtInformation(sighting.covariance)});
     if (!is_new) continue;
     covariances_.resize(graph_.num_landmarks(), Eigen::Matrix2d::Zero());
-    covariances_.back() =
-        PointCovariance(covariance_, T_map_base.rotation() * sighting.position) +
-        RotateCovariance(sighting.covariance, T_map_base.yaw);
+    covariances_.back() = PointCovariance(covariance_, T_map_base.rotation() * sighting.position) +
+                          RotateCovariance(sighting.covariance, T_map_base.yaw);
   }
   table_.Add(keyframe, odometer_);
   last_ = keyframe;
@@ -176,8 +175,8 @@ bool TrackMap::SolveAfterKeyframe() {
   return graph_.SolveAll();
 }
 
-std::vector<MapCone> TrackMap::Cones() const {
-  std::vector<MapCone> cones;
+std::vector<GlobalCone> TrackMap::Cones() const {
+  std::vector<GlobalCone> cones;
   const auto& landmarks = table_.landmarks();
   for (size_t i = 0; i < landmarks.size(); ++i) {
     const LandmarkInfo& info = landmarks[i];

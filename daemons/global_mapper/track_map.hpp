@@ -27,26 +27,28 @@ struct LoopParams {
 struct TrackMapParams {
   GraphParams graph;
   ConeFilter filter;
-  double keyframe_distance = 0.0;    // m, > 0
-  double keyframe_angle = 0.0;       // rad, > 0
-  size_t max_keyframes = 0;          // more are marginalised, > graph.window_poses
-  size_t full_solve_keyframes = 0;   // between solves of everything once the loop is closed, > 0
-  size_t max_landmarks = 0;          // > 0
-  int min_sightings = 0;             // keyframes that must have seen a cone before it is published, > 0
-  double covariance_inflation = 0.0; // of a local cone's covariance, since filtered means repeat, >= 1
-  double cone_sigma = 0.0;           // m, > 0: what no covariance models
-  double association_gate = 0.0;     // m, > 0
-  double memory_distance = 0.0;      // m driven since last seen within which the gate is enough, > 0
+  double keyframe_distance = 0.0;   // m, > 0
+  double keyframe_angle = 0.0;      // rad, > 0
+  size_t max_keyframes = 0;         // more are marginalised, > graph.window_poses
+  size_t full_solve_keyframes = 0;  // between solves of everything once the loop is closed, > 0
+  size_t max_landmarks = 0;         // > 0
+  int min_sightings = 0;  // keyframes that must have seen a cone before it is published, > 0
+  double covariance_inflation =
+      0.0;                        // of a local cone's covariance, since filtered means repeat, >= 1
+  double cone_sigma = 0.0;        // m, > 0: what no covariance models
+  double association_gate = 0.0;  // m, > 0
+  double memory_distance = 0.0;   // m driven since last seen within which the gate is enough, > 0
   LoopParams loop;
 
   /// Throws std::invalid_argument naming parameter, relation and bound.
   void Validate() const;
 };
 
-/// The map that is being made: keyframes and landmarks in a pose-landmark graph, data association, loop
-/// closure. [paper III-C, global map]
+/// The map that is being made: keyframes and landmarks in a pose-landmark graph, data association,
+/// loop closure. [paper III-C, global map]
 ///
-/// Made of MapRecords only. Observe() makes them; Replay() takes them, and is left with the same map.
+/// Made of MapRecords only. Observe() makes them; Replay() takes them, and is left with the same
+/// map.
 class TrackMap {
  public:
   explicit TrackMap(const TrackMapParams& params);
@@ -71,7 +73,7 @@ class TrackMap {
   bool loop_closed() const { return closed_; }
   double odometer() const { return odometer_; }
   /// Every cone seen often enough, by rising id.
-  std::vector<MapCone> Cones() const;
+  std::vector<GlobalCone> Cones() const;
   const PoseLandmarkGraph& graph() const { return graph_; }
 
  private:

@@ -25,10 +25,10 @@ struct TrackMap::Candidate {
   }
 };
 
-/// Pairs within the gate. A landmark that was last seen so long ago that drift may exceed the gate is
-/// left to the loop closure, unless the loop is closed.
-std::vector<TrackMap::Candidate> TrackMap::Candidates(
-    const std::vector<const LocalMapCone*>& cones, const Pose2& T_map_local) const {
+/// Pairs within the gate. A landmark that was last seen so long ago that drift may exceed the gate
+/// is left to the loop closure, unless the loop is closed.
+std::vector<TrackMap::Candidate> TrackMap::Candidates(const std::vector<const LocalMapCone*>& cones,
+                                                      const Pose2& T_map_local) const {
   std::vector<Candidate> candidates;
   const auto& landmarks = table_.landmarks();
   for (size_t l = 0; l < landmarks.size(); ++l) {
@@ -70,10 +70,9 @@ std::vector<SightingRecord> TrackMap::Associate(const LocalMapInput& map,
   auto next = static_cast<int64_t>(graph_.num_landmarks());
   for (size_t c = 0; c < open.size(); ++c) {
     if (done[c] || next >= static_cast<int64_t>(params_.max_landmarks)) continue;
-    const bool crowded =
-        std::any_of(sightings.begin(), sightings.end(), [&](const auto& sighting) {
-          return (sighting.first->position - open[c]->position).norm() < kCrowded;
-        });
+    const bool crowded = std::any_of(sightings.begin(), sightings.end(), [&](const auto& sighting) {
+      return (sighting.first->position - open[c]->position).norm() < kCrowded;
+    });
     if (!crowded) sightings.emplace_back(open[c], next++);
   }
   std::vector<SightingRecord> records;

@@ -7,7 +7,8 @@
 namespace hairpin {
 namespace {
 
-constexpr double kMinExplained = 0.7;  // share of the cones in known country that must be known ones
+constexpr double kMinExplained =
+    0.7;  // share of the cones in known country that must be known ones
 constexpr Eigen::Index kPoseSize = 3;
 
 }  // namespace
@@ -46,7 +47,8 @@ bool TrackMap::IsExplained(const std::vector<int64_t>& recent,
   return static_cast<double>(match.pairs.size()) >= kMinExplained * in_known_country;
 }
 
-/// By the covariance of the motion since the start, which is an upper bound of that since the old cones.
+/// By the covariance of the motion since the start, which is an upper bound of that since the old
+/// cones.
 bool TrackMap::IsPlausible(const Pose2& correction) const {
   const Pose2 corrected = correction * last_pose();
   Eigen::Matrix<double, kPoseSize, 1> shift;
@@ -63,9 +65,9 @@ std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
   const std::vector<int64_t> old = Landmarks(false);
   const auto match =
       MatchConstellation(Points(recent), Points(old), {}, params_.loop.constellation);
-  if (!match || !IsExplained(recent, *match) || !IsPlausible(match->T_to_from))
-    return std::nullopt;
-  // Only back at the start is the lap closed; elsewhere two stretches of the track come near each other.
+  if (!match || !IsExplained(recent, *match) || !IsPlausible(match->T_to_from)) return std::nullopt;
+  // Only back at the start is the lap closed; elsewhere two stretches of the track come near each
+  // other.
   const double to_start = (match->T_to_from * last_pose().position()).norm();
   MergeRecord merge{utime, to_start <= params_.loop.search_radius, {}};
   for (const auto& [from, to] : match->pairs) merge.pairs.emplace_back(recent[from], old[to]);

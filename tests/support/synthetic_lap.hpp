@@ -9,8 +9,8 @@
 
 namespace hairpin {
 
-/// Laps of 300 m round 150 cones in 600 poses each, with 12,300 sightings a lap (20.5 from each pose):
-/// odometry and sightings with noise, associations known.
+/// Laps of 300 m round 150 cones in 600 poses each, with 12,300 sightings a lap (20.5 from each
+/// pose): odometry and sightings with noise, associations known.
 class SyntheticLap {
  public:
   static constexpr int kPoses = 600;  // a lap

@@ -91,7 +91,10 @@ RaceOptions ToOptions(const Arguments& arguments) {
   const std::vector<std::string> sources = arguments.attach ? Simulator::Sources() : FaultSources();
   for (const std::string& text : arguments.faults)
     options.faults.push_back(ParseFault(text, sources));
-  options.stack = {arguments.config_dir, arguments.program_dir, arguments.out, arguments.overrides};
+  // The map of this run belongs to this run; --set may say otherwise.
+  std::vector<std::string> overrides{"global_mapper.files.directory=" + arguments.out};
+  overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
+  options.stack = {arguments.config_dir, arguments.program_dir, arguments.out, overrides};
   options.stack.overrides.push_back("simulator.referee.laps=" + std::to_string(arguments.laps));
   options.stack.overrides.push_back("mission_manager.autocross_laps=" +
                                     std::to_string(arguments.laps));
