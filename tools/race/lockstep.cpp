@@ -16,6 +16,7 @@ Lockstep::Lockstep(Transport& transport) : transport_(transport), bus_(transport
   Listen(channels::kDriveCommand);
   Listen(channels::kAsState);
   Listen(channels::kLocalMap);
+  Listen(channels::kGlobalMap);
   Listen(channels::kTrack);
   answers_[channels::kPipelineStatus.name];
   bus_.Subscribe(channels::kPipelineStatus, [this](const pipeline_status_t& message) {
@@ -48,7 +49,10 @@ void Lockstep::Heard(const std::string& channel, int64_t utime) {
 int64_t Lockstep::Wanted(const std::string& channel, int64_t utime) const {
   if (channel == channels::kPipelineStatus.name) return utime - kStatusPeriod;
   if (channel == channels::kAsState.name) return vehicle_utime_;
-  if (channel != channels::kLocalMap.name && channel != channels::kTrack.name) return utime;
+  const bool answers_cones = channel == channels::kLocalMap.name ||
+                             channel == channels::kGlobalMap.name ||
+                             channel == channels::kTrack.name;
+  if (!answers_cones) return utime;
   int64_t wanted = 0;
   for (const auto& [pipeline, observed] : observed_) {
     if (Uses(mode_, pipeline)) wanted = std::max(wanted, observed);

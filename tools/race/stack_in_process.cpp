@@ -1,4 +1,5 @@
 #include "daemons/boundary_estimator/boundary_estimator_node.hpp"
+#include "daemons/global_mapper/global_mapper_node.hpp"
 #include "daemons/local_mapper/local_mapper_node.hpp"
 #include "daemons/mission_manager/mission_manager_node.hpp"
 #include "daemons/path_tracker/path_tracker_node.hpp"
@@ -18,6 +19,9 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock) {
       {"local_mapper", Host([](Bus& bus, const Config& config) {
          return LocalMapperNode(LoadLocalMapperParams(config), bus);
        })},
+      {"global_mapper", Host([](Bus& bus, const Config& config) {
+         return GlobalMapperNode(LoadGlobalMapperConfig(config), bus);
+       })},
       {"boundary_estimator", Host([](Bus& bus, const Config& config) {
          return BoundaryEstimatorNode(LoadBoundaryEstimatorParams(config), bus);
        })},
@@ -36,9 +40,9 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock) {
 }  // namespace
 
 const std::vector<std::string>& StackDaemons() {
-  static const std::vector<std::string> names{"velocity_estimator", "watchdog",
-                                              "local_mapper",       "boundary_estimator",
-                                              "path_tracker",       "mission_manager"};
+  static const std::vector<std::string> names{
+      "velocity_estimator", "watchdog",     "local_mapper",   "global_mapper",
+      "boundary_estimator", "path_tracker", "mission_manager"};
   return names;
 }
 

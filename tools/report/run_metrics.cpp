@@ -92,6 +92,7 @@ nlohmann::json EvaluateRun(const RunLog& log, const RunContext& context) {
           {"real_time_factor", OrNull(context.real_time_factor)},
           {"lap", ToJson(context.lap)},
           {"map", ToJson(CompareMap(log))},
+          {"local_map", ToJson(CompareLocalMaps(log))},
           {"path", ToJson(MeasurePaths(log))},
           {"modes", ToJson(ModeChanges(log), DrivingPhase(log).go_utime())},
           {"latency_ms", LatencyJson(context.latency_ms)},

@@ -1,0 +1,196 @@
+#include "daemons/global_mapper/constellation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemons/global_mapper/require.hpp"
+
+namespace hairpin {
+namespace {
+
+constexpr double kMinBaseline = 3.0;  // m: a nearer pair says little of the turn
+constexpr size_t kMaxPoints = 40;     // bounds the work; the first ones count
+constexpr double kSamePlace = 1.0;    // m: two motions of the centre no farther apart are one
+constexpr int kRefinements = 3;
+
+using Points = std::vector<ConstellationPoint>;
+
+bool IsOrange(ConeColour colour) {
+  return colour == ConeColour::kOrange || colour == ConeColour::kOrangeLarge;
+}
+
+Eigen::Vector2d Centre(const Points& points) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const ConstellationPoint& point : points) sum += point.position;
+  return sum / static_cast<double>(points.size());
+}
+
+/// T that takes a pair to another one, midpoint to midpoint.
+Pose2 MotionOfPair(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p,
+                   const Eigen::Vector2d& q) {
+  const Eigen::Vector2d from = b - a;
+  const Eigen::Vector2d to = q - p;
+  const Pose2 turn{0.0, 0.0, std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to))};
+  const Eigen::Vector2d shift = 0.5 * (p + q) - turn * Eigen::Vector2d(0.5 * (a + b));
+  return {shift.x(), shift.y(), turn.yaw};
+}
+
+/// Nearest compatible partners within the tolerance, nearest first, each point once.
+ConstellationMatch Pair(const Points& from, const Points& to, const Pose2& T_to_from,
+                        double tolerance) {
+  struct Candidate {
+    double distance;
+    size_t from;
+    size_t to;
+  };
+  std::vector<Candidate> candidates;
+  for (size_t i = 0; i < from.size(); ++i) {
+    const Eigen::Vector2d position = T_to_from * from[i].position;
+    for (size_t j = 0; j < to.size(); ++j) {
+      const double distance = (position - to[j].position).norm();
+      if (distance < tolerance && AreCompatible(from[i].colour, to[j].colour))
+        candidates.push_back({distance, i, j});
+    }
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return std::tie(a.distance, a.from, a.to) < std::tie(b.distance, b.from, b.to);
+  });
+  std::vector<bool> from_taken(from.size(), false);
+  std::vector<bool> to_taken(to.size(), false);
+  ConstellationMatch match{T_to_from, {}, 0.0};
+  double squares = 0.0;
+  for (const Candidate& candidate : candidates) {
+    if (from_taken[candidate.from] || to_taken[candidate.to]) continue;
+    from_taken[candidate.from] = to_taken[candidate.to] = true;
+    match.pairs.emplace_back(candidate.from, candidate.to);
+    squares += candidate.distance * candidate.distance;
+  }
+  if (!match.pairs.empty())
+    match.rmse = std::sqrt(squares / static_cast<double>(match.pairs.size()));
+  return match;
+}
+
+/// Least squares over the pairs, in closed form [Arun 1987].
+Pose2 Align(const Points& from, const Points& to, const ConstellationMatch& match) {
+  Eigen::Vector2d from_mean = Eigen::Vector2d::Zero();
+  Eigen::Vector2d to_mean = Eigen::Vector2d::Zero();
+  for (const auto& [i, j] : match.pairs) {
+    from_mean += from[i].position;
+    to_mean += to[j].position;
+  }
+  from_mean /= static_cast<double>(match.pairs.size());
+  to_mean /= static_cast<double>(match.pairs.size());
+  double cosine = 0.0;
+  double sine = 0.0;
+  for (const auto& [i, j] : match.pairs) {
+    const Eigen::Vector2d a = from[i].position - from_mean;
+    const Eigen::Vector2d b = to[j].position - to_mean;
+    cosine += a.dot(b);
+    sine += a.x() * b.y() - a.y() * b.x();
+  }
+  const Pose2 turn{0.0, 0.0, std::atan2(sine, cosine)};
+  const Eigen::Vector2d shift = to_mean - turn * from_mean;
+  return {shift.x(), shift.y(), turn.yaw};
+}
+
+bool IsBetter(const ConstellationMatch& a, const ConstellationMatch& b) {
+  return a.pairs.size() != b.pairs.size() ? a.pairs.size() > b.pairs.size() : a.rmse < b.rmse;
+}
+
+class Search {
+ public:
+  Search(const Points& from, const Points& to, const Pose2& guess,
+         const ConstellationParams& params)
+      : from_(from), to_(to), guess_(guess), params_(params), centre_(Centre(from)) {}
+
+  std::optional<ConstellationMatch> Run() {
+    for (size_t i = 0; i < from_.size(); ++i) {
+      for (size_t j = i + 1; j < from_.size(); ++j) TryPair(from_[i], from_[j]);
+    }
+    if (best_.pairs.size() < params_.min_pairs) return std::nullopt;
+    for (const auto& [centre, pairs] : places_) {
+      const bool elsewhere = (centre - best_.T_to_from * centre_).norm() > kSamePlace;
+      if (elsewhere && pairs + params_.min_lead > best_.pairs.size()) return std::nullopt;
+    }
+    return best_;
+  }
+
+ private:
+  void TryPair(const ConstellationPoint& a, const ConstellationPoint& b) {
+    const double baseline = (b.position - a.position).norm();
+    if (baseline < kMinBaseline) return;
+    for (const ConstellationPoint& p : to_) {
+      if (!AreCompatible(a.colour, p.colour)) continue;
+      for (const ConstellationPoint& q : to_) {
+        if (&p == &q || !AreCompatible(b.colour, q.colour)) continue;
+        if (std::abs((q.position - p.position).norm() - baseline) > params_.tolerance) continue;
+        const Pose2 motion = MotionOfPair(a.position, b.position, p.position, q.position);
+        if (IsWithinBounds(motion)) Consider(motion);
+      }
+    }
+  }
+
+  bool IsWithinBounds(const Pose2& motion) const {
+    return std::abs(WrapAngle(motion.yaw - guess_.yaw)) <= params_.max_rotation &&
+           (motion * centre_ - guess_ * centre_).norm() <= params_.max_translation;
+  }
+
+  void Consider(const Pose2& motion) {
+    ConstellationMatch match = Pair(from_, to_, motion, params_.tolerance);
+    for (int i = 0; i < kRefinements && match.pairs.size() >= 2; ++i)
+      match = Pair(from_, to_, Align(from_, to_, match), params_.tolerance);
+    if (!IsWithinBounds(match.T_to_from)) return;
+    Remember(match);
+    if (IsBetter(match, best_)) best_ = std::move(match);
+  }
+
+  /// Keeps the best count of each place tried.
+  void Remember(const ConstellationMatch& match) {
+    const Eigen::Vector2d centre = match.T_to_from * centre_;
+    for (auto& [known, pairs] : places_) {
+      if ((known - centre).norm() > 0.5 * kSamePlace) continue;
+      pairs = std::max(pairs, match.pairs.size());
+      return;
+    }
+    places_.emplace_back(centre, match.pairs.size());
+  }
+
+  const Points& from_;
+  const Points& to_;
+  Pose2 guess_;
+  ConstellationParams params_;
+  Eigen::Vector2d centre_;
+  ConstellationMatch best_;
+  std::vector<std::pair<Eigen::Vector2d, size_t>> places_;
+};
+
+Points FirstOf(const Points& points) {
+  return {points.begin(),
+          points.begin() + static_cast<std::ptrdiff_t>(std::min(points.size(), kMaxPoints))};
+}
+
+}  // namespace
+
+void ConstellationParams::Validate() const {
+  RequireGlobalMap(tolerance > 0.0, "constellation tolerance must be > 0");
+  RequireGlobalMap(max_translation > 0.0, "constellation max_translation must be > 0");
+  RequireGlobalMap(max_rotation > 0.0, "constellation max_rotation must be > 0");
+  RequireGlobalMap(min_pairs >= 3, "constellation min_pairs must be >= 3");
+  RequireGlobalMap(min_lead >= 1, "constellation min_lead must be >= 1");
+}
+
+bool AreCompatible(ConeColour a, ConeColour b) {
+  if (a == ConeColour::kUnknown || b == ConeColour::kUnknown || a == b) return true;
+  return IsOrange(a) && IsOrange(b);
+}
+
+std::optional<ConstellationMatch> MatchConstellation(const Points& from, const Points& to,
+                                                     const Pose2& guess,
+                                                     const ConstellationParams& params) {
+  if (from.size() < params.min_pairs || to.size() < params.min_pairs) return std::nullopt;
+  const Points some = FirstOf(from);
+  const Points others = FirstOf(to);
+  return Search(some, others, guess, params).Run();
+}
+
+}  // namespace hairpin
