@@ -11,17 +11,17 @@ constexpr double kBehind = 3.0;
 RaceLineParams LoadRaceLineParams(const Config& config) {
   RaceLineParams params;
   params.car = LoadCar(config);
-  params.corridor.spacing = config.Number("line_spacing_m", {0.1, 2.0});
-  params.corridor.smoothing_length = config.Number("line_smoothing_length_m", {0.0, 5.0});
-  params.corridor.max_half_width = config.Number("line_max_half_width_m", {1.0, 20.0});
-  params.corridor.clearance = config.Number("line_clearance_m", {0.0, 3.0});
-  params.line.max_iterations = config.Integer("line_max_iterations", 1, 1000);
-  params.line.max_step = config.Number("line_max_step_m", {0.01, 5.0});
-  params.line.tolerance = config.Number("line_tolerance_m", {1e-4, 1.0});
-  params.speed.max_speed = config.Number("line_max_speed_mps", {1.0, 40.0});
-  params.speed.lateral_acceleration = config.Number("line_lateral_acceleration_mps2", {0.5, 20.0});
-  params.speed.braking = config.Number("line_braking_mps2", {0.5, 20.0});
-  params.speed.acceleration = config.Number("line_acceleration_mps2", {0.5, 20.0});
+  params.corridor.spacing = config.Number("spacing_m", {0.1, 2.0});
+  params.corridor.smoothing_length = config.Number("smoothing_length_m", {0.0, 5.0});
+  params.corridor.max_half_width = config.Number("max_half_width_m", {1.0, 20.0});
+  params.corridor.clearance = config.Number("clearance_m", {0.0, 3.0});
+  params.line.max_iterations = config.Integer("max_iterations", 1, 1000);
+  params.line.max_step = config.Number("max_step_m", {0.01, 5.0});
+  params.line.tolerance = config.Number("tolerance_m", {1e-4, 1.0});
+  params.speed.max_speed = config.Number("max_speed_mps", {1.0, 40.0});
+  params.speed.lateral_acceleration = config.Number("lateral_acceleration_mps2", {0.5, 20.0});
+  params.speed.braking = config.Number("braking_mps2", {0.5, 20.0});
+  params.speed.acceleration = config.Number("acceleration_mps2", {0.5, 20.0});
   params.speed.mass = params.car.mass;
   params.speed.downforce = params.car.downforce;
   params.speed.drag = params.car.drag;
@@ -39,7 +39,7 @@ std::optional<race_line_t> RaceLineMessage(const RaceLine& line, int64_t utime,
   message.y_m = T_map_base.y;
   message.yaw_rad = T_map_base.yaw;
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(message.pose_covariance) = covariance;
-  for (const RaceLine::Point& point : Stretch(line, T_map_base, kBehind, ahead)) {
+  for (const RaceLine::Point& point : Excerpt(line, T_map_base, kBehind, ahead)) {
     message.points.push_back(
         {point.position.x(), point.position.y(), point.speed, point.left, point.right});
   }

@@ -10,7 +10,7 @@
 
 namespace hairpin {
 
-/// Reads the `line_*` keys of `config` and car.yaml. Problems are collected there.
+/// Reads a section `race_line` but for `ahead_m`, and car.yaml. Problems are collected there.
 RaceLineParams LoadRaceLineParams(const Config& config);
 
 /// RACE_LINE for a pose of base in map and its covariance of (x, y, yaw): from 3 m behind the car

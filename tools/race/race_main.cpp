@@ -96,7 +96,7 @@ struct Leg {
   bool trackdrive = false;
   int laps = 1;
   uint64_t seed = 1;
-  std::string map;  // to race on; for an autocross the file that it leaves
+  std::string map;  // to race on; empty: none
   std::string out;
   std::vector<std::string> faults;
 };
@@ -105,24 +105,24 @@ std::vector<Leg> LegsOf(const Arguments& arguments) {
   Leg leg{false, arguments.laps, arguments.seed, "", arguments.out, arguments.faults};
   leg.trackdrive = arguments.mission == "trackdrive";
   if (leg.laps == 0) leg.laps = leg.trackdrive ? 10 : 1;
-  leg.map = leg.trackdrive ? arguments.map : leg.out + "/map.yaml";
+  leg.map = leg.trackdrive ? arguments.map : "";
   if (!leg.trackdrive || !leg.map.empty()) return {leg};
-  const std::string first_out = arguments.out + "/autocross";
-  const Leg first{false, 1, arguments.seed, first_out + "/map.yaml", first_out, {}};
+  const Leg first{false, 1, arguments.seed, "", arguments.out + "/autocross", {}};
   leg.seed = arguments.seed + 1;  // another start: the sensors' errors are drawn anew
-  leg.map = first.map;
+  leg.map = first.out + "/map.yaml";
   leg.out = arguments.out + "/trackdrive";
   return {first, leg};
 }
 
 std::vector<std::string> LegOverrides(const Leg& leg, double speed_cap) {
   const std::string mission = leg.trackdrive ? "trackdrive" : "autocross";
-  const int number = leg.trackdrive ? vehicle_t::MISSION_TRACKDRIVE : vehicle_t::MISSION_AUTOCROSS;
+  int32_t number = vehicle_t::MISSION_AUTOCROSS;
+  if (leg.trackdrive) number = vehicle_t::MISSION_TRACKDRIVE;
   std::vector<std::string> overrides{
       "simulator.referee.laps=" + std::to_string(leg.laps),
       "simulator.race_control.mission=" + std::to_string(number),
       "mission_manager." + mission + "_laps=" + std::to_string(leg.laps),
-      "global_mapper.map_file=" + leg.map};
+      "global_mapper.files.known_map=" + (leg.map.empty() ? "none" : leg.map)};
   if (speed_cap > 0.0) {
     const std::string cap = std::to_string(speed_cap);
     overrides.push_back("path_tracker.max_speed_mps=" + cap);
@@ -140,7 +140,10 @@ RaceOptions ToOptions(const Arguments& arguments, const Leg& leg) {
   options.speed = arguments.speed >= 0.0 ? arguments.speed : arguments.in_process ? 0.0 : 1.0;
   const std::vector<std::string> sources = arguments.attach ? Simulator::Sources() : FaultSources();
   for (const std::string& text : leg.faults) options.faults.push_back(ParseFault(text, sources));
-  options.stack = {arguments.config_dir, arguments.program_dir, leg.out, arguments.overrides};
+  // The map of this run belongs to this run; --set may say otherwise.
+  std::vector<std::string> overrides{"global_mapper.files.directory=" + leg.out};
+  overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
+  options.stack = {arguments.config_dir, arguments.program_dir, leg.out, overrides};
   for (const std::string& text : LegOverrides(leg, arguments.speed_cap))
     options.stack.overrides.push_back(text);
   options.log_file = leg.out + "/log.lcmlog";

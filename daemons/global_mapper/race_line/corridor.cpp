@@ -27,10 +27,10 @@ void Check(const CorridorParams& params) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(std::string("Corridor: ") + what);
   };
-  require(params.spacing > 0.0, "line_spacing_m must be > 0");
-  require(params.smoothing_length >= 0.0, "line_smoothing_length_m must be >= 0");
+  require(params.spacing > 0.0, "spacing_m must be > 0");
+  require(params.smoothing_length >= 0.0, "smoothing_length_m must be >= 0");
   require(params.max_half_width > 0.0, "max_half_width_m must be > 0");
-  require(params.clearance >= 0.0, "line_clearance_m must be >= 0");
+  require(params.clearance >= 0.0, "clearance_m must be >= 0");
 }
 
 bool BelongsTo(size_t side, ConeColour colour) {
@@ -86,6 +86,19 @@ double DistanceTo(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
   return (from + t * along - point).norm();
 }
 
+// A drive that ends a little before its beginning, and leads there.
+bool EndsBehindItsBeginning(const Points& poses, const std::vector<double>& driven,
+                            double min_lap) {
+  constexpr double kMaxWay = 25.0;        // m
+  constexpr double kCosineOfAngle = 0.7;  // between that way and the drive's two ends
+  if (poses.size() < 3 || driven.back() < min_lap) return false;
+  const Eigen::Vector2d way = poses.front() - poses.back();
+  const Eigen::Vector2d first = (poses[1] - poses[0]).normalized();
+  const Eigen::Vector2d last = (poses.back() - poses[poses.size() - 2]).normalized();
+  const double least = kCosineOfAngle * way.norm();
+  return way.norm() <= kMaxWay && way.dot(first) >= least && way.dot(last) >= least;
+}
+
 }  // namespace
 
 SweptWidth SweptBy(const Car& car, double curvature) {
@@ -117,6 +130,7 @@ Points LapOf(const Points& poses, double min_lap) {
       last = j;
     }
   }
+  if (last == 0 && EndsBehindItsBeginning(poses, driven, min_lap)) return poses;
   if (last == 0)
     throw std::invalid_argument("LapOf: the drive does not come back to its beginning");
   const Eigen::Vector2d gap = poses[first] - poses[last];

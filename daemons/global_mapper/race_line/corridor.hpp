@@ -25,8 +25,9 @@ struct CorridorParams {
 
 /// One lap of a drive that began before the start line and went on past it: from the place to the
 /// place a lap later where the drive comes nearest to itself, at least `min_lap` metres on; what is
-/// left between the two ends is spread over the lap. `poses` are in map, in the order driven.
-/// Throws std::invalid_argument where the drive never comes within 3 m of its own beginning.
+/// left between the two ends is spread over the lap. A drive that ends up to 25 m before its
+/// beginning, and leads there, is a lap as it is. `poses` are in map, in the order driven. Throws
+/// std::invalid_argument where neither holds: the drive never comes within 3 m of its beginning.
 Points LapOf(const Points& poses, double min_lap);
 
 /// What lies between the left and the right cones of a lap, and how much of it a car can use.

@@ -14,10 +14,10 @@ void Check(const LapSpeedParams& params) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(std::string("LapSpeeds: ") + what);
   };
-  require(params.max_speed > 0.0, "line_max_speed_mps must be > 0");
-  require(params.lateral_acceleration > 0.0, "line_lateral_acceleration_mps2 must be > 0");
-  require(params.braking > 0.0, "line_braking_mps2 must be > 0");
-  require(params.acceleration > 0.0, "line_acceleration_mps2 must be > 0");
+  require(params.max_speed > 0.0, "max_speed_mps must be > 0");
+  require(params.lateral_acceleration > 0.0, "lateral_acceleration_mps2 must be > 0");
+  require(params.braking > 0.0, "braking_mps2 must be > 0");
+  require(params.acceleration > 0.0, "acceleration_mps2 must be > 0");
   require(params.mass > 0.0, "mass_kg must be > 0");
   require(params.downforce >= 0.0, "downforce_n_per_mps2 must be >= 0");
   require(params.drag >= 0.0, "drag_n_per_mps2 must be >= 0");

@@ -18,9 +18,9 @@ void Check(const MinimumCurvatureParams& params) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(std::string("MinimumCurvatureLine: ") + what);
   };
-  require(params.max_iterations >= 1, "line_max_iterations must be >= 1");
-  require(params.max_step > 0.0, "line_max_step_m must be > 0");
-  require(params.tolerance > 0.0, "line_tolerance_m must be > 0");
+  require(params.max_iterations >= 1, "max_iterations must be >= 1");
+  require(params.max_step > 0.0, "max_step_m must be > 0");
+  require(params.tolerance > 0.0, "tolerance_m must be > 0");
 }
 
 // The car's body reaches over more than one point.

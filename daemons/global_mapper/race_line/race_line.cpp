@@ -11,7 +11,7 @@ constexpr double kFarthest = 5.0;  // m: from there on the car is not on this li
 
 }  // namespace
 
-std::vector<RaceLine::Point> Stretch(const RaceLine& line, const Pose2& T_map_base, double behind,
+std::vector<RaceLine::Point> Excerpt(const RaceLine& line, const Pose2& T_map_base, double behind,
                                      double ahead) {
   const size_t n = line.points.size();
   const Eigen::Vector2d forward = T_map_base.rotation().col(0);

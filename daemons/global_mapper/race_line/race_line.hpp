@@ -30,7 +30,7 @@ struct RaceLine {
 /// The part of the line from `behind` [m] behind the car to `ahead` [m] ahead of it, in driving
 /// order; of places equally near the one counts that leads the car's way. At most once round.
 /// Empty where the line is not within 5 m, or everywhere leads elsewhere.
-std::vector<RaceLine::Point> Stretch(const RaceLine& line, const Pose2& T_map_base, double behind,
+std::vector<RaceLine::Point> Excerpt(const RaceLine& line, const Pose2& T_map_base, double behind,
                                      double ahead);
 
 /// Between the events: from the cones of a finished map and a lap of the drive that made it

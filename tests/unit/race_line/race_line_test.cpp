@@ -168,18 +168,29 @@ TEST(LapOf, CutsOneLapOutOfADriveThatOverruns) {
   for (const double k : curve.curvature()) EXPECT_NEAR(k, 0.05, 0.03);
 }
 
+TEST(LapOf, TakesADriveThatEndsBehindItsBeginningAsItIs) {
+  Points drive;
+  for (int i = 0; i < 180; ++i) {  // 12.6 m are missing
+    const double angle = 2.0 * std::numbers::pi * i / 200;
+    drive.emplace_back(20.0 * std::cos(angle), 20.0 * std::sin(angle));
+  }
+  EXPECT_EQ(LapOf(drive, 100.0).size(), drive.size());
+  drive.resize(120);  // 46 m are missing
+  EXPECT_THROW(LapOf(drive, 50.0), std::invalid_argument);
+}
+
 TEST(LapOf, RefusesADriveThatDoesNotComeBack) {
   Points drive;
   for (int i = 0; i < 300; ++i) drive.emplace_back(1.0 * i, 0.0);
   EXPECT_THROW(LapOf(drive, 100.0), std::invalid_argument);
 }
 
-TEST(Stretch, BeginsBehindTheCarAndGoesOnPastTheEndOfTheLap) {
+TEST(Excerpt, BeginsBehindTheCarAndGoesOnPastTheEndOfTheLap) {
   const RaceLine line = Plan(CircularLap(20.0, 3.0));
   const double last = line.spacing * static_cast<double>(line.points.size() - 4);
   const double angle = last / 22.0;
   const Pose2 car{22.0 * std::cos(angle), 22.0 * std::sin(angle), angle + std::numbers::pi / 2};
-  const auto stretch = Stretch(line, car, 3.0, 40.0);
+  const auto stretch = Excerpt(line, car, 3.0, 40.0);
   ASSERT_EQ(stretch.size(), 1u + static_cast<size_t>(std::lround(3.0 / line.spacing)) +
                                 static_cast<size_t>(std::lround(40.0 / line.spacing)));
   for (size_t i = 1; i < stretch.size(); ++i)
@@ -190,10 +201,10 @@ TEST(Stretch, BeginsBehindTheCarAndGoesOnPastTheEndOfTheLap) {
       1.5);
 }
 
-TEST(Stretch, IsEmptyWhereTheCarIsNotOnTheLineOrFacesTheOtherWay) {
+TEST(Excerpt, IsEmptyWhereTheCarIsNotOnTheLineOrFacesTheOtherWay) {
   const RaceLine line = Plan(CircularLap(20.0, 3.0));
-  EXPECT_TRUE(Stretch(line, {0.0, 0.0, 0.0}, 3.0, 40.0).empty());
-  EXPECT_TRUE(Stretch(line, {20.0, 0.0, -std::numbers::pi / 2}, 3.0, 40.0).empty());
+  EXPECT_TRUE(Excerpt(line, {0.0, 0.0, 0.0}, 3.0, 40.0).empty());
+  EXPECT_TRUE(Excerpt(line, {20.0, 0.0, -std::numbers::pi / 2}, 3.0, 40.0).empty());
 }
 
 }  // namespace
