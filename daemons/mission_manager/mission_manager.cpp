@@ -1,5 +1,6 @@
 #include "daemons/mission_manager/mission_manager.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -67,11 +68,26 @@ void MissionManager::TakeBuild(const std::string& daemon, const std::string& bui
   same_build_[daemon] = build == params_.build && types_hash == params_.types_hash;
 }
 
+void MissionManager::TakeLocalisation(const LocalisationInput& localisation) {
+  localisation_ = localisation;
+  if (localisation.phase != global_map_t::PHASE_LOCALISED) return;
+  const std::optional<Pose2> T_own_base = history_.At(localisation.utime);
+  if (T_own_base) T_map_own_ = localisation.T_map_base * T_own_base->Inverse();
+}
+
+// T_start_own: by the map where the car began localised in it, else by dead reckoning alone.
+Pose2 MissionManager::StartFromOwn() const {
+  if (drive_->T_map_start && T_map_own_) return drive_->T_map_start->Inverse() * *T_map_own_;
+  return drive_->T_own_start.Inverse();
+}
+
 bool MissionManager::TakeVelocity(int64_t utime, const Twist2& velocity) {
   if (!history_.Add(utime, velocity)) return false;
   if (drive_) {
-    const Pose2 T_start_base = drive_->T_own_start.Inverse() * *history_.At(utime);
-    drive_->laps.Move(T_start_base, history_.distance() - drive_->start_distance);
+    const Pose2 T_start_base = StartFromOwn() * *history_.At(utime);
+    const bool localised =
+        drive_->T_map_start && LocalisationProblem(std::max(utime, localisation_->now)).empty();
+    drive_->laps.Move(T_start_base, history_.distance() - drive_->start_distance, localised);
   }
   return true;
 }
@@ -81,7 +97,7 @@ bool MissionManager::TakeLocalMap(int64_t utime, const Pose2& T_local_base,
   const std::optional<Pose2> T_own_base = history_.At(utime);
   if (!T_own_base) return false;
   if (!drive_) return true;
-  const Pose2 T_start_base = drive_->T_own_start.Inverse() * *T_own_base;
+  const Pose2 T_start_base = StartFromOwn() * *T_own_base;
   const Pose2 T_start_local = T_start_base * T_local_base.Inverse();
   for (GateCone& cone : cones) cone.position = T_start_local * cone.position;
   drive_->laps.Observe(cones, T_start_base, history_.distance() - drive_->start_distance);
@@ -147,7 +163,10 @@ std::optional<MissionReport> MissionManager::Update(const VehicleInput& vehicle,
   const AsState state = machine_.Update(input);
   if (state == AsState::kDriving && before != AsState::kDriving) {
     const Pose2 T_own_start = history_.At(history_.newest_utime()).value_or(Pose2{});
-    drive_.emplace(Drive{T_own_start, history_.distance(), LapCounter(params_.laps)});
+    std::optional<Pose2> T_map_start;
+    if (mission_ == vehicle_t::MISSION_TRACKDRIVE && T_map_own_)
+      T_map_start = *T_map_own_ * T_own_start;
+    drive_.emplace(Drive{T_own_start, T_map_start, history_.distance(), LapCounter(params_.laps)});
   }
   MissionReport report;
   report.state = state;

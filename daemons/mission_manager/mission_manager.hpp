@@ -52,8 +52,10 @@ struct SupervisionInput {
 
 /// Newest word of the global mapper.
 struct LocalisationInput {
+  int64_t utime = 0;  // of the pose
   int64_t now = 0;    // data time when it was heard
   int32_t phase = 0;  // as in global_map_t
+  Pose2 T_map_base;
 };
 
 /// State of the mission; fields as in as_state_t.
@@ -78,7 +80,8 @@ class MissionManager {
   /// among them.
   void Heard(const std::string& channel, int64_t now) { monitors_.at(channel).Heard(now); }
   void TakeSupervision(const SupervisionInput& supervision) { supervision_ = supervision; }
-  void TakeLocalisation(const LocalisationInput& localisation) { localisation_ = localisation; }
+  /// In a trackdrive the pose in a known map takes the drift out of dead reckoning.
+  void TakeLocalisation(const LocalisationInput& localisation);
   /// Which build another daemon runs.
   void TakeBuild(const std::string& daemon, const std::string& build, int64_t types_hash);
   /// Returns false, and ignores it, where the time does not increase.
@@ -94,10 +97,12 @@ class MissionManager {
   /// The drive that began with Driving.
   struct Drive {
     Pose2 T_own_start;
+    std::optional<Pose2> T_map_start;  // where the car is localised
     double start_distance;
     LapCounter laps;
   };
 
+  Pose2 StartFromOwn() const;
   std::string SystemProblem(int64_t now) const;
   std::string LocalisationProblem(int64_t now) const;
   bool Stands(const VehicleInput& vehicle);
@@ -111,6 +116,7 @@ class MissionManager {
   std::map<std::string, RateMonitor> monitors_;
   std::optional<SupervisionInput> supervision_;
   std::optional<LocalisationInput> localisation_;
+  std::optional<Pose2> T_map_own_;          // by the newest pose in the known map
   int32_t mission_ = 0;                     // as in vehicle_t
   std::map<std::string, bool> same_build_;  // by daemon
   std::optional<Drive> drive_;

@@ -61,6 +61,7 @@ LapCounterParams LoadLaps(const Config& config) {
   laps.gate_memory = config.Number("gate_memory_m", {0.1, 200.0});
   laps.blind_tolerance = config.Number("blind_tolerance_m", {0.1, 50.0});
   laps.blind_overrun = config.Number("blind_overrun_m", {0.0, 50.0});
+  laps.localised_overrun = config.Number("localised_overrun_m", {0.0, 50.0});
   laps.max_heading_error = config.Number("max_heading_error_rad", {0.01, 1.57});
   return laps;
 }
@@ -99,7 +100,10 @@ MissionManagerNode::MissionManagerNode(const MissionManagerParams& params, Bus& 
     manager_.TakeBuild(message.daemon, message.build, message.types_hash);
   });
   bus.Subscribe(channels::kGlobalMap, [this](const global_map_t& message) {
-    manager_.TakeLocalisation({Now(message.utime), message.phase});
+    manager_.TakeLocalisation({message.utime,
+                               Now(message.utime),
+                               message.phase,
+                               {message.x_m, message.y_m, message.yaw_rad}});
   });
   bus.Subscribe(channels::kTrack, [this](const track_t& message) {
     manager_.Heard(channels::kTrack.name, Now(message.utime));

@@ -133,7 +133,9 @@ bool PathTracker::TakeAsState(const AsStateInput& as_state) {
   if (!as_state.mission_finished) finish_deceleration_.reset();
   if (as_state.mission_finished && !finish_deceleration_) {
     const double needed = 0.5 * twist_.vx * twist_.vx / params_.finish_distance;
-    finish_deceleration_ = std::max(needed, params_.gate.finish_deceleration);
+    finish_deceleration_ =
+        std::clamp(needed, params_.gate.finish_deceleration,
+                   std::max(params_.control.max_braking, params_.gate.finish_deceleration));
   }
   return true;
 }

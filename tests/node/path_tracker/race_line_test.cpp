@@ -126,7 +126,7 @@ TEST_F(RaceLineTest, FastAtTheFinishTheCarBrakesAsHardAsTheDistanceNeeds) {
   as_state.mission_finished = 1;
   Run(0.2);
   EXPECT_EQ(command->action, drive_command_t::ACTION_STOP);
-  EXPECT_NEAR(command->target_acceleration_mps2, -0.5 * 15.0 * 15.0 / 20.0, 1e-6);
+  EXPECT_NEAR(command->target_acceleration_mps2, -0.5 * 15.0 * 15.0 / 18.0, 1e-6);
 }
 
 TEST_F(RaceLineTest, ThatIsNonsenseIsRefusedAndCounted) {
