@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 #include "daemons/global_mapper/require.hpp"
@@ -11,10 +12,11 @@ namespace {
 
 constexpr double kMinBaseline = 3.0;  // m: a nearer pair says little of the turn
 constexpr size_t kMaxPoints = 40;     // bounds the work; the first ones count
-constexpr double kSamePlace = 1.0;    // m: two motions of the centre no farther apart are one
+
 constexpr int kRefinements = 3;
 
 using Points = std::vector<ConstellationPoint>;
+using Pairs = std::vector<std::pair<size_t, size_t>>;
 
 bool IsOrange(ConeColour colour) {
   return colour == ConeColour::kOrange || colour == ConeColour::kOrangeLarge;
@@ -114,11 +116,11 @@ class Search {
       for (size_t j = i + 1; j < from_.size(); ++j) TryPair(from_[i], from_[j]);
     }
     if (best_.pairs.size() < params_.min_pairs) return std::nullopt;
-    for (const auto& [centre, score] : places_) {
-      const bool elsewhere = (centre - best_.T_to_from * centre_).norm() > kSamePlace;
-      if (elsewhere && score + static_cast<double>(params_.min_lead) > best_.score)
-        return std::nullopt;
-    }
+    const bool ambiguous = std::any_of(places_.begin(), places_.end(), [this](const auto& place) {
+      return place.second + static_cast<double>(params_.min_lead) > best_.score &&
+             IsElsewhere(place.first);
+    });
+    if (ambiguous) return std::nullopt;
     return best_;
   }
 
@@ -147,21 +149,27 @@ class Search {
     for (int i = 0; i < kRefinements && match.pairs.size() >= 2; ++i)
       match = Pair(from_, to_, Align(from_, to_, match), params_.tolerance);
     if (!IsWithinBounds(match.T_to_from)) return;
-    match.score = static_cast<double>(match.pairs.size());
+    const double misfit = std::pow(match.rmse / params_.tolerance, 2);
+    match.score = static_cast<double>(match.pairs.size()) * (1.0 - misfit);
     if (penalty_) match.score -= penalty_(match.T_to_from);
     Remember(match);
     if (IsBetter(match, best_)) best_ = std::move(match);
   }
 
-  /// Keeps the best score of each place tried.
+  /// Keeps the best score of each set of pairs found.
   void Remember(const ConstellationMatch& match) {
-    const Eigen::Vector2d centre = match.T_to_from * centre_;
-    for (auto& [known, score] : places_) {
-      if ((known - centre).norm() > 0.5 * kSamePlace) continue;
-      score = std::max(score, match.score);
-      return;
-    }
-    places_.emplace_back(centre, match.score);
+    Pairs pairs = match.pairs;
+    std::sort(pairs.begin(), pairs.end());
+    const auto [place, is_new] = places_.try_emplace(std::move(pairs), match.score);
+    if (!is_new) place->second = std::max(place->second, match.score);
+  }
+
+  /// True if most of the pairs are others than the best place's.
+  bool IsElsewhere(const Pairs& pairs) const {
+    const auto shared = std::count_if(pairs.begin(), pairs.end(), [this](const auto& pair) {
+      return std::find(best_.pairs.begin(), best_.pairs.end(), pair) != best_.pairs.end();
+    });
+    return 2 * static_cast<size_t>(shared) < pairs.size();
   }
 
   const Points& from_;
@@ -171,7 +179,7 @@ class Search {
   const PlacePenalty& penalty_;
   Eigen::Vector2d centre_;
   ConstellationMatch best_;
-  std::vector<std::pair<Eigen::Vector2d, double>> places_;
+  std::map<Pairs, double> places_;  // score by sorted pairs
 };
 
 Points FirstOf(const Points& points) {

@@ -32,7 +32,8 @@ struct ConstellationMatch {
   Pose2 T_to_from;
   std::vector<std::pair<size_t, size_t>> pairs;  // (from, to), each point once
   double rmse = 0.0;                             // m
-  double score = 0.0;                            // pairs less the penalty
+  double score = 0.0;  // sum over the pairs of 1 - (distance / tolerance)^2, less the penalty [Torr
+                       // 2000, MSAC]
 };
 
 /// False for two colours that contradict each other; unknown contradicts none, and the two sizes of

@@ -5,6 +5,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/simulator/track_testing.hpp"
 #include "tools/simulator/track_formats.hpp"
+#include "tools/simulator/track_geometry.hpp"
 
 namespace hairpin {
 namespace {
