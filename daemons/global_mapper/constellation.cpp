@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "daemons/global_mapper/require.hpp"
 
@@ -10,10 +12,11 @@ namespace {
 
 constexpr double kMinBaseline = 3.0;  // m: a nearer pair says little of the turn
 constexpr size_t kMaxPoints = 40;     // bounds the work; the first ones count
-constexpr double kSamePlace = 1.0;    // m: two motions of the centre no farther apart are one
+
 constexpr int kRefinements = 3;
 
 using Points = std::vector<ConstellationPoint>;
+using Pairs = std::vector<std::pair<size_t, size_t>>;
 
 bool IsOrange(ConeColour colour) {
   return colour == ConeColour::kOrange || colour == ConeColour::kOrangeLarge;
@@ -57,7 +60,7 @@ ConstellationMatch Pair(const Points& from, const Points& to, const Pose2& T_to_
   });
   std::vector<bool> from_taken(from.size(), false);
   std::vector<bool> to_taken(to.size(), false);
-  ConstellationMatch match{T_to_from, {}, 0.0};
+  ConstellationMatch match{T_to_from, {}, 0.0, 0.0};
   double squares = 0.0;
   for (const Candidate& candidate : candidates) {
     if (from_taken[candidate.from] || to_taken[candidate.to]) continue;
@@ -94,24 +97,30 @@ Pose2 Align(const Points& from, const Points& to, const ConstellationMatch& matc
 }
 
 bool IsBetter(const ConstellationMatch& a, const ConstellationMatch& b) {
-  return a.pairs.size() != b.pairs.size() ? a.pairs.size() > b.pairs.size() : a.rmse < b.rmse;
+  return a.score != b.score ? a.score > b.score : a.rmse < b.rmse;
 }
 
 class Search {
  public:
   Search(const Points& from, const Points& to, const Pose2& guess,
-         const ConstellationParams& params)
-      : from_(from), to_(to), guess_(guess), params_(params), centre_(Centre(from)) {}
+         const ConstellationParams& params, const PlacePenalty& penalty)
+      : from_(from),
+        to_(to),
+        guess_(guess),
+        params_(params),
+        penalty_(penalty),
+        centre_(Centre(from)) {}
 
   std::optional<ConstellationMatch> Run() {
     for (size_t i = 0; i < from_.size(); ++i) {
       for (size_t j = i + 1; j < from_.size(); ++j) TryPair(from_[i], from_[j]);
     }
     if (best_.pairs.size() < params_.min_pairs) return std::nullopt;
-    for (const auto& [centre, pairs] : places_) {
-      const bool elsewhere = (centre - best_.T_to_from * centre_).norm() > kSamePlace;
-      if (elsewhere && pairs + params_.min_lead > best_.pairs.size()) return std::nullopt;
-    }
+    const bool ambiguous = std::any_of(places_.begin(), places_.end(), [this](const auto& place) {
+      return place.second + static_cast<double>(params_.min_lead) > best_.score &&
+             IsElsewhere(place.first);
+    });
+    if (ambiguous) return std::nullopt;
     return best_;
   }
 
@@ -140,28 +149,37 @@ class Search {
     for (int i = 0; i < kRefinements && match.pairs.size() >= 2; ++i)
       match = Pair(from_, to_, Align(from_, to_, match), params_.tolerance);
     if (!IsWithinBounds(match.T_to_from)) return;
+    const double misfit = std::pow(match.rmse / params_.tolerance, 2);
+    match.score = static_cast<double>(match.pairs.size()) * (1.0 - misfit);
+    if (penalty_) match.score -= penalty_(match.T_to_from);
     Remember(match);
     if (IsBetter(match, best_)) best_ = std::move(match);
   }
 
-  /// Keeps the best count of each place tried.
+  /// Keeps the best score of each set of pairs found.
   void Remember(const ConstellationMatch& match) {
-    const Eigen::Vector2d centre = match.T_to_from * centre_;
-    for (auto& [known, pairs] : places_) {
-      if ((known - centre).norm() > 0.5 * kSamePlace) continue;
-      pairs = std::max(pairs, match.pairs.size());
-      return;
-    }
-    places_.emplace_back(centre, match.pairs.size());
+    Pairs pairs = match.pairs;
+    std::sort(pairs.begin(), pairs.end());
+    const auto [place, is_new] = places_.try_emplace(std::move(pairs), match.score);
+    if (!is_new) place->second = std::max(place->second, match.score);
+  }
+
+  /// True if most of the pairs are others than the best place's.
+  bool IsElsewhere(const Pairs& pairs) const {
+    const auto shared = std::count_if(pairs.begin(), pairs.end(), [this](const auto& pair) {
+      return std::find(best_.pairs.begin(), best_.pairs.end(), pair) != best_.pairs.end();
+    });
+    return 2 * static_cast<size_t>(shared) < pairs.size();
   }
 
   const Points& from_;
   const Points& to_;
   Pose2 guess_;
   ConstellationParams params_;
+  const PlacePenalty& penalty_;
   Eigen::Vector2d centre_;
   ConstellationMatch best_;
-  std::vector<std::pair<Eigen::Vector2d, size_t>> places_;
+  std::map<Pairs, double> places_;  // score by sorted pairs
 };
 
 Points FirstOf(const Points& points) {
@@ -186,11 +204,12 @@ bool AreCompatible(ConeColour a, ConeColour b) {
 
 std::optional<ConstellationMatch> MatchConstellation(const Points& from, const Points& to,
                                                      const Pose2& guess,
-                                                     const ConstellationParams& params) {
+                                                     const ConstellationParams& params,
+                                                     const PlacePenalty& penalty) {
   if (from.size() < params.min_pairs || to.size() < params.min_pairs) return std::nullopt;
   const Points some = FirstOf(from);
   const Points others = FirstOf(to);
-  return Search(some, others, guess, params).Run();
+  return Search(some, others, guess, params, penalty).Run();
 }
 
 }  // namespace hairpin

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -31,11 +32,17 @@ struct ConstellationMatch {
   Pose2 T_to_from;
   std::vector<std::pair<size_t, size_t>> pairs;  // (from, to), each point once
   double rmse = 0.0;                             // m
+  double score = 0.0;  // sum over the pairs of 1 - (distance / tolerance)^2, less the penalty [Torr
+                       // 2000, MSAC]
 };
 
 /// False for two colours that contradict each other; unknown contradicts none, and the two sizes of
 /// orange not each other.
 bool AreCompatible(ConeColour a, ConeColour b);
+
+/// How improbable a place is before anything was compared, in pairs that it must have more: of two
+/// places with odds of e^3 to 1, the pairs being worth as much each, one.
+using PlacePenalty = std::function<double(const Pose2& T_to_from)>;
 
 /// Finds the place of a group of cones among others by its shape, whatever the drift within the
 /// bounds: every pair of cones is tried on every pair of equal distance, and the rigid motion that
@@ -45,6 +52,7 @@ bool AreCompatible(ConeColour a, ConeColour b);
 std::optional<ConstellationMatch> MatchConstellation(const std::vector<ConstellationPoint>& from,
                                                      const std::vector<ConstellationPoint>& to,
                                                      const Pose2& guess,
-                                                     const ConstellationParams& params);
+                                                     const ConstellationParams& params,
+                                                     const PlacePenalty& penalty = {});
 
 }  // namespace hairpin

@@ -94,7 +94,7 @@ class TrackMap {
   std::vector<int64_t> Landmarks(bool recent) const;
   std::vector<ConstellationPoint> Points(const std::vector<int64_t>& landmarks) const;
   bool IsExplained(const std::vector<int64_t>& recent, const ConstellationMatch& match) const;
-  bool IsPlausible(const Pose2& correction) const;
+  double CorrectionChi2(const Pose2& correction) const;
   bool FitsAfterSolve(const MergeRecord& merge) const;
   void TryToClose(Step& step);
 

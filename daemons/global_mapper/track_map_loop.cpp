@@ -8,7 +8,8 @@ namespace hairpin {
 namespace {
 
 constexpr double kMinExplained =
-    0.7;  // share of the cones in known country that must be known ones
+    0.7;                              // share of the cones in known country that must be known ones
+constexpr double kChi2PerPair = 6.0;  // twice the logarithm of the odds that one more pair is worth
 constexpr Eigen::Index kPoseSize = 3;
 
 }  // namespace
@@ -47,9 +48,9 @@ bool TrackMap::IsExplained(const std::vector<int64_t>& recent,
   return static_cast<double>(match.pairs.size()) >= kMinExplained * in_known_country;
 }
 
-/// By the covariance of the motion since the start, which is an upper bound of that since the old
-/// cones.
-bool TrackMap::IsPlausible(const Pose2& correction) const {
+/// Of a correction, by the covariance of the motion since the start: an upper bound of that since
+/// the old cones were seen.
+double TrackMap::CorrectionChi2(const Pose2& correction) const {
   const Pose2 corrected = correction * last_pose();
   Eigen::Matrix<double, kPoseSize, 1> shift;
   shift << corrected.x - last_pose().x, corrected.y - last_pose().y, correction.yaw;
@@ -57,15 +58,18 @@ bool TrackMap::IsPlausible(const Pose2& correction) const {
   Eigen::Matrix3d covariance = covariance_;
   covariance.topLeftCorner<2, 2>() += tolerance * tolerance * Eigen::Matrix2d::Identity();
   covariance(2, 2) += std::pow(tolerance / params_.filter.max_range, 2);
-  return shift.dot(covariance.ldlt().solve(shift)) <= params_.loop.gate_chi2;
+  return shift.dot(covariance.ldlt().solve(shift));
 }
 
 std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
   const std::vector<int64_t> recent = Landmarks(true);
   const std::vector<int64_t> old = Landmarks(false);
   const auto match =
-      MatchConstellation(Points(recent), Points(old), {}, params_.loop.constellation);
-  if (!match || !IsExplained(recent, *match) || !IsPlausible(match->T_to_from)) return std::nullopt;
+      MatchConstellation(Points(recent), Points(old), {}, params_.loop.constellation,
+                         [this](const Pose2& T) { return CorrectionChi2(T) / kChi2PerPair; });
+  if (!match || !IsExplained(recent, *match) ||
+      CorrectionChi2(match->T_to_from) > params_.loop.gate_chi2)
+    return std::nullopt;
   // Only back at the start is the lap closed; elsewhere two stretches of the track come near each
   // other.
   const double to_start = (match->T_to_from * last_pose().position()).norm();
