@@ -8,5 +8,6 @@ namespace hairpin {
 /// figures on stdout, progress on stderr. Running throws ConfigError or RecordingError for input
 /// that cannot be used, std::exception where it failed otherwise.
 void AddPlannerCommand(CLI::App& app);
+void AddVelocityCommand(CLI::App& app);
 
 }  // namespace hairpin

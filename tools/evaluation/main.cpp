@@ -16,6 +16,7 @@ int Main(int argc, char** argv) {
   CLI::App app("Figures from recordings, for people or (--json) for machines", "hairpin-evaluate");
   app.require_subcommand(1);
   AddPlannerCommand(app);
+  AddVelocityCommand(app);
   try {
     app.parse(argc, argv);  // runs the subcommand
     return 0;
