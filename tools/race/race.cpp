@@ -119,7 +119,11 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
   if (options.in_process) {
     stack = std::make_unique<InProcessStack>(options.stack, transport);
   } else {
-    stack = std::make_unique<ProcessStack>(options.stack, transport.url());
+    if (options.attach) {
+      stack = std::make_unique<AttachedStack>();
+    } else {
+      stack = std::make_unique<ProcessStack>(options.stack, transport.url());
+    }
     AwaitDaemons(transport, *stack, stop);
     lockstep.emplace(transport);
   }

@@ -21,6 +21,7 @@ struct Arguments {
   uint64_t seed = 1;
   int laps = 1;
   bool in_process = false;
+  bool attach = false;
   double speed = -1.0;  // not given
   double speed_cap = 0.0;
   std::vector<std::string> faults;
@@ -53,6 +54,9 @@ void Define(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--in-process", arguments.in_process,
                "all daemons in one process, on memq://; repeatable to the byte");
+  app.add_flag("--attach", arguments.attach,
+               "drive with the daemons that run here already (systemd's) and their own configs")
+      ->excludes("--in-process");
   app.add_option("--set", arguments.overrides,
                  "DAEMON.KEY=VALUE in place of a config file's value (repeatable)")
       ->allow_extra_args(false);
@@ -82,8 +86,9 @@ RaceOptions ToOptions(const Arguments& arguments) {
   options.track = LoadTrack(TrackFile(arguments));
   options.seed = arguments.seed;
   options.in_process = arguments.in_process;
+  options.attach = arguments.attach;
   options.speed = arguments.speed >= 0.0 ? arguments.speed : arguments.in_process ? 0.0 : 1.0;
-  const std::vector<std::string> sources = FaultSources();
+  const std::vector<std::string> sources = arguments.attach ? Simulator::Sources() : FaultSources();
   for (const std::string& text : arguments.faults)
     options.faults.push_back(ParseFault(text, sources));
   options.stack = {arguments.config_dir, arguments.program_dir, arguments.out, arguments.overrides};
