@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iostream>
 #include <stdexcept>
 
 #include "common/geometry.hpp"
@@ -75,7 +76,7 @@ void GnssDriverNode::TryToOpen() {
   try {
     port_ = std::make_unique<SerialPort>(params_.port, params_.baud_rate);
   } catch (const std::runtime_error& error) {
-    bus_.Refuse(channels::kGnss, error.what());
+    Warn(error.what());
   }
 }
 
@@ -88,7 +89,7 @@ void GnssDriverNode::Poll() {
       if (count == 0) break;
       for (const GnssFix& fix : decoder_.Add(Bytes(buffer).first(count))) Publish(fix);
     } catch (const std::runtime_error& error) {
-      bus_.Refuse(channels::kGnss, error.what());
+      Warn(error.what());
       port_.reset();
     }
   }
@@ -108,9 +109,17 @@ void GnssDriverNode::Publish(const GnssFix& fix) {
 
 void GnssDriverNode::ReportBad() {
   for (const auto& [why, count] : decoder_.bad()) {
-    int64_t& reported = reported_[why];
-    for (; reported < count; ++reported) bus_.Refuse(channels::kGnss, why);
+    if (reported_[why] != count) Warn(why + " (" + std::to_string(count) + " so far)");
+    reported_[why] = count;
   }
+}
+
+// At most once a second, the first of what is wrong.
+void GnssDriverNode::Warn(const std::string& why) {
+  const int64_t now = clock_.NowMicros();
+  if (last_warning_ && now - *last_warning_ < kRetryPeriod) return;
+  last_warning_ = now;
+  std::cerr << bus_.daemon() << ": " << params_.port << ": " << why << '\n';
 }
 
 }  // namespace hairpin

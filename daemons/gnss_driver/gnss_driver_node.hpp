@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +45,7 @@ class GnssDriverNode {
   void TryToOpen();
   void Publish(const GnssFix& fix);
   void ReportBad();
+  void Warn(const std::string& why);
 
   GnssDriverParams params_;
   Bus& bus_;
@@ -53,6 +55,7 @@ class GnssDriverNode {
   std::unique_ptr<SerialPort> port_;
   std::optional<int64_t> last_try_;
   std::map<std::string, int64_t> reported_;
+  std::optional<int64_t> last_warning_;
 };
 
 }  // namespace hairpin

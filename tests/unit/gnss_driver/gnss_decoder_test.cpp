@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -171,7 +172,7 @@ std::string IsoTime(int64_t utime) {
   const std::time_t seconds = utime / 1'000'000;
   std::tm parts{};
   gmtime_r(&seconds, &parts);
-  char text[40];
+  char text[100];
   std::snprintf(text, sizeof(text), "%04d-%02d-%02dT%02d:%02d:%02d.%03dZ", parts.tm_year + 1900,
                 parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
                 static_cast<int>(utime / 1000 % 1000));
