@@ -32,9 +32,10 @@ SurveyedPoint ToPoint(const json& entry) {
   SurveyedPoint point;
   point.kind = *kind;
   point.utime = entry.at("utime");
-  point.position = {entry.at("latitude_deg"), entry.at("longitude_deg"), entry.at("height_m")};
+  point.position = {entry.at("latitude_deg").get<double>(), entry.at("longitude_deg").get<double>(),
+                    entry.at("height_m").get<double>()};
   const json& sigma = entry.at("sigma_m");
-  point.sigma = {sigma.at(0), sigma.at(1), sigma.at(2)};
+  for (size_t i = 0; i < 3; ++i) point.sigma[static_cast<int>(i)] = sigma.at(i).get<double>();
   point.fixes = entry.at("fixes");
   return point;
 }
