@@ -114,11 +114,12 @@ TEST(GnssDecoder, UnderstandsUbxWithTheHeadingOfTwoAntennas) {
 
 TEST(GnssDecoder, CountsWhatIsWrongByReason) {
   GnssDecoder decoder(kErrors);
-  Decode(decoder, "$GPHDT,88.5,T*00\r\n");
+  Decode(decoder, "$GPHDT,88.6,T*7F\r\n");
   Decode(decoder, "$GPHDT,88.5,T\r\n");
   Decode(decoder, NmeaFrame("GPGGA,129999.00,4723.7664,N,00838.8878,E,4,12,0.8,440.1,M,47.9,M,,"));
   Decode(decoder, NmeaFrame("GPGGA,123519.00,9923.7664,N,00838.8878,E,4,12,0.8,440.1,M,47.9,M,,"));
   Decode(decoder, NmeaFrame("GPHDT,nan,T"));
+  Decode(decoder, NmeaFrame("GPHDT,8x8,T"));
   Decode(decoder, "$" + std::string(200, 'x'));
   std::vector<uint8_t> frame = UbxFrame(kUbxNavPvt, PvtPayload({}));
   frame.back() ^= 1;
@@ -126,8 +127,8 @@ TEST(GnssDecoder, CountsWhatIsWrongByReason) {
   decoder.Add(UbxFrame(kUbxNavPvt, std::vector<uint8_t>(10)));
   for (const char* why :
        {"NMEA checksum wrong", "NMEA sentence without checksum", "NMEA time out of range",
-        "NMEA position out of range", "NMEA field is no number", "NMEA sentence too long",
-        "UBX checksum wrong", "UBX NAV-PVT of wrong length"}) {
+        "NMEA position out of range", "NMEA field is no number", "NMEA field out of range",
+        "NMEA sentence too long", "UBX checksum wrong", "UBX NAV-PVT of wrong length"}) {
     EXPECT_EQ(decoder.bad().count(why), 1U) << why;
   }
 }
