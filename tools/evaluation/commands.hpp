@@ -11,5 +11,6 @@ void AddLidarCommand(CLI::App& app);
 void AddMapCommand(CLI::App& app);
 void AddPlannerCommand(CLI::App& app);
 void AddSlamCommand(CLI::App& app);
+void AddVelocityCommand(CLI::App& app);
 
 }  // namespace hairpin

@@ -19,6 +19,7 @@ int Main(int argc, char** argv) {
   AddMapCommand(app);
   AddPlannerCommand(app);
   AddSlamCommand(app);
+  AddVelocityCommand(app);
   try {
     app.parse(argc, argv);  // runs the subcommand
     return 0;
