@@ -23,6 +23,7 @@ LidarConeDetectorNode::LidarConeDetectorNode(const LidarConeDetectorNodeParams& 
     : params_(params),
       bus_(bus),
       detector_(params.detector),
+      colours_(params.colour),
       history_(kHistory),
       pairing_(params.pairing) {
   bus.Subscribe(channels::kVelocity, [this](const velocity_t& m) { OnVelocity(m); });
@@ -84,7 +85,7 @@ void LidarConeDetectorNode::Detect(const ScanSet& scans) {
 
 void LidarConeDetectorNode::Publish(int64_t utime, const std::vector<DetectedCone>& cones) {
   const std::vector<ConeReturns> returns = ReturnsOf(cloud_, detector_.heights(), cones);
-  const std::vector<ColourDistribution> colours(cones.size(), kColourUnknown);
+  const std::vector<ColourDistribution> colours = colours_.Classify(returns);
   const cone_clusters_t clusters =
       ToClustersMessage(utime, cones, returns, colours, SectorsLookedAt(cloud_, kMaxSectors),
                         params_.detector.max_range);
@@ -95,6 +96,7 @@ void LidarConeDetectorNode::Publish(int64_t utime, const std::vector<DetectedCon
 LidarConeDetectorNodeParams LoadLidarConeDetectorParams(const Config& config) {
   LidarConeDetectorNodeParams params;
   params.detector = LoadDetectorParams(config);
+  params.colour = LoadColourParams(config);
   const Config input = config.Section("input");
   params.pairing.max_wait = input.Number("max_wait_s", {0.0, 0.2});
   params.pairing.period = 1.0 / channels::kLidarFront.rate_hz;

@@ -10,6 +10,7 @@
 #include "common/lidar_scan.hpp"
 #include "common/pose_history.hpp"
 #include "daemons/lidar_cone_detector/body_box.hpp"
+#include "daemons/lidar_cone_detector/colour_classifier.hpp"
 #include "daemons/lidar_cone_detector/lidar_cone_detector.hpp"
 #include "daemons/lidar_cone_detector/scan_pairing.hpp"
 
@@ -17,6 +18,7 @@ namespace hairpin {
 
 struct LidarConeDetectorNodeParams {
   LidarConeDetectorParams detector;
+  ColourParams colour;
   std::array<Eigen::Isometry3f, kNumLidars> T_base_sensor;
   BodyBox body;
   ScanPairingParams pairing;
@@ -48,6 +50,7 @@ class LidarConeDetectorNode {
   LidarConeDetectorNodeParams params_;
   Bus& bus_;
   LidarConeDetector detector_;
+  ColourClassifier colours_;
   PoseHistory history_;
   ScanPairing pairing_;
   PointCloud cloud_;

@@ -7,6 +7,7 @@
 
 #include "tools/simulator/lidar/terrain.hpp"
 #include "tools/simulator/require.hpp"
+#include "tools/simulator/track_geometry.hpp"
 
 namespace hairpin {
 namespace {
@@ -95,7 +96,7 @@ class Placement {
   /// Things outside of `side`, whose inside is where `other` is.
   void Beside(const std::vector<TrackCone>& side, const std::vector<TrackCone>& other) {
     for (const TrackCone& cone : side) {
-      const Eigen::Vector2d inward = Nearest(other, cone.position) - cone.position;
+      const Eigen::Vector2d inward = NearestCone(other, cone.position) - cone.position;
       const Eigen::Vector2d outward = -inward.normalized();
       MaybePlace(params_.kerb_probability, cone.position + 0.9 * outward, outward, 0.5, AddKerb);
       Place(params_.barrier_probability, cone.position, outward, AddBarrier);
@@ -117,8 +118,8 @@ class Placement {
  private:
   using Builder = void (*)(const Site&, RandomStream&, std::vector<Thing>&);
 
-  static Eigen::Vector2d Nearest(const std::vector<TrackCone>& cones,
-                                 const Eigen::Vector2d& position) {
+  static Eigen::Vector2d NearestCone(const std::vector<TrackCone>& cones,
+                                     const Eigen::Vector2d& position) {
     const auto nearest =
         std::min_element(cones.begin(), cones.end(), [&](const TrackCone& a, const TrackCone& b) {
           return (a.position - position).norm() < (b.position - position).norm();
@@ -139,7 +140,7 @@ class Placement {
   void MaybePlace(double probability, const Eigen::Vector2d& position,
                   const Eigen::Vector2d& outward, double clearance, Builder builder) {
     if (!random_.Chance(probability)) return;
-    if ((Nearest(cones_, position) - position).norm() < clearance) return;
+    if ((NearestCone(cones_, position) - position).norm() < clearance) return;
     builder(SiteAt(position, std::atan2(outward.y(), outward.x()) + 0.5 * kPi), random_, things_);
   }
 

@@ -6,6 +6,7 @@
 #include "tools/simulator/lidar/cone_shape.hpp"
 #include "tools/simulator/lidar/hash_random.hpp"
 #include "tools/simulator/require.hpp"
+#include "tools/simulator/track_geometry.hpp"
 
 namespace hairpin {
 namespace {

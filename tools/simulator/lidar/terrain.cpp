@@ -110,11 +110,4 @@ void Terrain::Pave(const std::vector<TrackCone>& cones) {
   }
 }
 
-std::vector<TrackCone> AllCones(const Track& track) {
-  std::vector<TrackCone> all;
-  for (const auto* cones : {&track.left, &track.right, &track.others})
-    all.insert(all.end(), cones->begin(), cones->end());
-  return all;
-}
-
 }  // namespace hairpin

@@ -53,7 +53,4 @@ class Terrain {
   TriangleMesh mesh_;
 };
 
-/// All cones of a track: left, right, others.
-std::vector<TrackCone> AllCones(const Track& track);
-
 }  // namespace hairpin
