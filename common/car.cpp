@@ -50,6 +50,10 @@ Car LoadCar(const Config& config) {
   car.max_wheel_torque = file.Number("max_wheel_torque_nm", {10.0, 1000.0});
   car.max_brake_force = file.Number("max_brake_force_n", {100.0, 20000.0});
   car.front_brake_share = file.Number("front_brake_share", {0.0, 1.0});
+  car.max_motor_power = file.Number("max_motor_power_w", {1e3, 1e6});
+  car.drag = file.Number("drag_n_per_mps2", {0.0, 10.0});
+  car.downforce = file.Number("downforce_n_per_mps2", {0.0, 10.0});
+  car.rolling_resistance = file.Number("rolling_resistance_n", {0.0, 1000.0});
   const std::vector<double> ground_speed = file.Numbers("ground_speed_position_m", 2, {-3.0, 3.0});
   car.ground_speed_position = {ground_speed[0], ground_speed[1]};
   const std::vector<double> gnss = file.Numbers("gnss_position_m", 2, {-3.0, 3.0});

@@ -36,6 +36,10 @@ struct Car {
   double max_wheel_torque = 0.0;    // one motor, at the wheel, driving and regenerating
   double max_brake_force = 0.0;     // both axles together at full brake, at the tyres
   double front_brake_share = 0.0;   // 0 to 1
+  double max_motor_power = 0.0;     // of all motors together, W
+  double drag = 0.0;                // force per squared speed, N s^2/m^2
+  double downforce = 0.0;           // the same
+  double rolling_resistance = 0.0;  // N
   Eigen::Vector2d ground_speed_position = Eigen::Vector2d::Zero();
   Eigen::Vector2d gnss_position = Eigen::Vector2d::Zero();
   LidarMount lidar_front;

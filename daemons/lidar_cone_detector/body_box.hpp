@@ -1,7 +1,6 @@
 #pragma once
 
 #include "common/car.hpp"
-#include "daemons/lidar_cone_detector/point_cloud.hpp"
 
 namespace hairpin {
 
@@ -15,8 +14,6 @@ struct BodyBox {
   bool Contains(float x, float y) const {
     return x > min_x && x < max_x && y > -half_width && y < half_width;
   }
-  /// `out` becomes the points of `cloud` outside.
-  void RemoveFrom(const PointCloud& cloud, PointCloud& out) const;
 };
 
 /// The car's outline with a margin [m].

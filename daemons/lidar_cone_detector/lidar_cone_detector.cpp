@@ -144,6 +144,7 @@ void LidarConeDetector::RemoveDoubles() {
 
 const std::vector<DetectedCone>& LidarConeDetector::Detect(
     const PointCloud& cloud, std::span<const SensorGeometry> sensors) {
+  Done(DetectorStage::kStart);
   sensors_ = sensors;
   model_.SetSensors(sensors);
   heights_ = &ground_.Fit(cloud);

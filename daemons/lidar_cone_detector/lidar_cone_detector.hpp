@@ -55,8 +55,8 @@ struct Candidate {
   Verdict verdict;
 };
 
-enum class DetectorStage { kGround, kClusters, kFeet, kCones };
-inline constexpr int kNumDetectorStages = 4;
+enum class DetectorStage { kStart, kGround, kClusters, kFeet, kCones };
+inline constexpr int kNumDetectorStages = 4;  // kStart is none
 
 /// LiDAR points to cones [paper III-B, "LiDAR only"]: adaptive ground removal, Euclidean clusters,
 /// reconstruction of the foot, a cone's surface fitted, acceptance by the expected number of
@@ -75,7 +75,7 @@ class LidarConeDetector {
   const Ground& ground() const { return ground_; }
   const std::vector<Candidate>& candidates() const { return candidates_; }
 
-  /// Is called at the end of each stage of Detect(), for a stopwatch.
+  /// Is called at the start and at the end of each stage of Detect(), for a stopwatch.
   void OnStageDone(std::function<void(DetectorStage)> listener) { listener_ = std::move(listener); }
 
  private:

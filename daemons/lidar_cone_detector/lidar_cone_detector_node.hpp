@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "common/bus.hpp"
@@ -31,6 +32,13 @@ struct LidarConeDetectorNodeParams {
 class LidarConeDetectorNode {
  public:
   LidarConeDetectorNode(const LidarConeDetectorNodeParams& params, Bus& bus);
+
+  /// For evaluation: what the last message was detected in, and how.
+  const PointCloud& cloud() const { return cloud_; }
+  const LidarConeDetector& detector() const { return detector_; }
+  void OnStageDone(std::function<void(DetectorStage)> listener) {
+    detector_.OnStageDone(std::move(listener));
+  }
 
  private:
   void SubscribeScans(const Channel<lidar_scan_t>& channel, size_t lidar);

@@ -38,13 +38,15 @@ struct Refused {
 /// All lasers' returns of one position of the head.
 struct Column {
   int azimuth;  // of the head at its first firing, clockwise from x [0.01 deg], 0 to 35999
+  float time;   // of that firing, from the packet's first one [s]
   size_t end;   // one past its last point in DecodedPacket::points
 };
 
 /// What one data packet says.
 struct DecodedPacket {
-  uint32_t time_us = 0;   // of the first firing, past the hour on the sensor's clock
-  double duration = 0.0;  // to the last firing [s]
+  uint32_t time_us = 0;      // of the first firing, past the hour on the sensor's clock
+  double duration = 0.0;     // to the last firing [s]
+  double column_turn = 0.0;  // of the head between two columns, on average [0.01 deg]
   std::vector<Column> columns;
   std::vector<LidarPoint> points;  // in the order of firing; `age` is here the time since the first
                                    // firing of the packet [s]

@@ -20,14 +20,6 @@ constexpr int kMaxJitter = 100;
 
 int Phase(int azimuth, int cut) { return (azimuth - cut + kFullTurn) % kFullTurn; }
 
-// The head's turn between two columns of a packet, on average.
-double MeanStep(const DecodedPacket& packet) {
-  const size_t steps = packet.columns.size() - 1;
-  if (steps == 0) return 0.0;
-  const int turn = Phase(packet.columns.back().azimuth, packet.columns.front().azimuth);
-  return static_cast<double>(turn) / static_cast<double>(steps);
-}
-
 }  // namespace
 
 RevolutionAssembler::RevolutionAssembler(const RevolutionParams& params, double column_period)
@@ -47,7 +39,7 @@ bool RevolutionAssembler::Advances(const DecodedPacket& packet) const {
 
 std::optional<Revolution> RevolutionAssembler::Add(const DecodedPacket& packet, int64_t utime) {
   last_azimuth_ = packet.columns.front().azimuth;
-  const double turned = SecondsBetween(current_.utime, utime) / column_period_ * MeanStep(packet);
+  const double turned = SecondsBetween(current_.utime, utime) / column_period_ * packet.column_turn;
   if (last_phase_ && turned >= kFullTurn) Reset();  // nothing was heard for a turn
   std::optional<Revolution> complete;
   size_t first = 0;
@@ -57,7 +49,7 @@ std::optional<Revolution> RevolutionAssembler::Add(const DecodedPacket& packet, 
       AddColumns(packet, first, i, utime);
       first = i;
       if (auto revolution = Complete()) complete = std::move(revolution);
-      begin_utime_ = AddSeconds(utime, static_cast<double>(i) * column_period_);
+      begin_utime_ = AddSeconds(utime, static_cast<double>(packet.columns[i].time));
       from_its_beginning_ = true;
     }
     last_phase_ = phase;
@@ -74,10 +66,10 @@ std::optional<Revolution> RevolutionAssembler::Add(const DecodedPacket& packet, 
 void RevolutionAssembler::AddColumns(const DecodedPacket& packet, size_t first, size_t last,
                                      int64_t utime) {
   if (first == last) return;
-  const auto end = static_cast<double>(last) * column_period_;
+  const double end = static_cast<double>(packet.columns[last - 1].time) + column_period_;
   current_.utime = AddSeconds(utime, std::min(end, packet.duration));
   if (!from_its_beginning_) return;
-  covered_ += static_cast<double>(last - first) * MeanStep(packet);
+  covered_ += static_cast<double>(last - first) * packet.column_turn;
   columns_ += static_cast<int64_t>(last - first);
   ++current_.packets;
   const size_t begin_point = first == 0 ? 0 : packet.columns[first - 1].end;

@@ -23,6 +23,7 @@ constexpr uint8_t kStrongest = 0x37;
 constexpr uint8_t kLast = 0x38;
 constexpr uint8_t kDual = 0x39;
 constexpr int kFullTurn = 36000;           // 0.01 deg
+constexpr double kMaxDuration = 0.2;       // s: a turn of the slowest head
 constexpr int kMaxBlockTurn = 200;         // twice what the fastest head turns in the longest block
 constexpr uint32_t kHour = 3'600'000'000;  // us
 constexpr size_t kOusterSize = 12608;      // of an Ouster OS1's 16 columns of 64 pixels
@@ -61,6 +62,24 @@ SinCos SinCosOf(float hundredths) {
       (shifted - static_cast<float>(nearest)) * static_cast<float>(1.0 / kHundredthsPerRadian);
   const SinCos entry = kTable[static_cast<size_t>(nearest % kFullTurn)];
   return {entry.sin + entry.cos * rest, entry.cos - entry.sin * rest};
+}
+
+// From a block to the one `stride` after it.
+int TurnOf(const uint8_t* block, size_t stride) {
+  return (AzimuthOf(block + stride * kBlockSize) - AzimuthOf(block) + kFullTurn) % kFullTurn;
+}
+
+// The mean of those turns within a packet that are no jumps; 0 where there is none.
+double MeanTurn(const uint8_t* packet, size_t stride) {
+  int sum = 0;
+  int count = 0;
+  for (size_t block = 0; block + stride < kBlocks; block += stride) {
+    const int turn = TurnOf(packet + block * kBlockSize, stride);
+    if (turn > kMaxBlockTurn) continue;
+    sum += turn;
+    ++count;
+  }
+  return count == 0 ? 0.0 : static_cast<double>(sum) / count;
 }
 
 size_t ColumnStride(uint8_t mode) { return mode == kDual ? 2 : 1; }
@@ -145,11 +164,8 @@ std::optional<Refused> VelodyneDecoder::Problem(std::span<const uint8_t> packet)
     const int azimuth = AzimuthOf(data);
     if (azimuth >= kFullTurn)
       return Refused{Refusal::kAzimuth, "azimuth " + std::to_string(azimuth)};
-    if (block == 0) continue;
-    const int turn = (azimuth - AzimuthOf(data - kBlockSize) + kFullTurn) % kFullTurn;
-    const bool twin = block % stride != 0;
-    if (twin ? turn != 0 : turn > kMaxBlockTurn)
-      return Refused{Refusal::kAzimuth, "azimuth jumps by " + std::to_string(turn)};
+    if (block % stride != 0 && azimuth != AzimuthOf(data - kBlockSize))
+      return Refused{Refusal::kAzimuth, "two azimuths for one pair of returns"};
   }
   return std::nullopt;
 }
@@ -163,18 +179,23 @@ std::optional<Refused> VelodyneDecoder::Decode(std::span<const uint8_t> packet,
   const size_t stride = ColumnStride(packet[kModeOffset]);
   const size_t sequences = model_.sequences_per_block();
   const double block_period = model_.sequence_period * static_cast<double>(sequences);
-  int turn = 0;
+  const double mean_turn = MeanTurn(packet.data(), stride);
+  decoded.column_turn = mean_turn / static_cast<double>(sequences);
   double time = 0.0;
-  for (size_t block = 0; block < kBlocks; block += stride, time += block_period) {
+  for (size_t block = 0; block < kBlocks; block += stride) {
     const uint8_t* data = &packet[block * kBlockSize];
-    // The last block turns like the one before it.
-    if (block + stride < kBlocks)
-      turn = (AzimuthOf(data + stride * kBlockSize) - AzimuthOf(data) + kFullTurn) % kFullTurn;
+    // The last block turns like the others, and so does one before a jump.
+    const int step = block + stride < kBlocks ? TurnOf(data, stride) : kFullTurn;
+    const bool jumps = step > kMaxBlockTurn;
     DecodeBlock(data, stride == 2 ? data + kBlockSize : nullptr,
-                static_cast<float>(AzimuthOf(data)), static_cast<float>(turn),
+                static_cast<float>(AzimuthOf(data)), static_cast<float>(jumps ? mean_turn : step),
                 static_cast<float>(time), decoded);
+    decoded.duration = time + static_cast<double>(lasers_.back().time);
+    time += jumps && mean_turn > 0.0 ? block_period * step / mean_turn : block_period;
   }
-  decoded.duration = time - block_period + static_cast<double>(lasers_.back().time);
+  // A head that hardly turns would take for ever to where a jump ends.
+  if (decoded.duration > kMaxDuration)
+    return Refused{Refusal::kAzimuth, "azimuths of a packet too far apart"};
   return std::nullopt;
 }
 
@@ -190,7 +211,8 @@ void VelodyneDecoder::DecodeBlock(const uint8_t* block, const uint8_t* twin, flo
       DecodeReturn(twin + offset, lasers_[i], fired_azimuth, time, decoded);
     if ((i + 1) % channels != 0) continue;
     const float first = azimuth + turn * lasers_[i + 1 - channels].turn;
-    decoded.columns.push_back({static_cast<int>(first) % kFullTurn, decoded.points.size()});
+    decoded.columns.push_back({static_cast<int>(first) % kFullTurn,
+                               time + lasers_[i + 1 - channels].time, decoded.points.size()});
   }
 }
 

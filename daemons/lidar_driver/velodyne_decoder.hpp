@@ -26,7 +26,9 @@ struct VelodyneParams {
 /// come in pairs of one azimuth. Sources: user manuals 63-9325 (VLP-32C) and 63-9243 (VLP-16).
 ///
 /// The azimuth of a laser is the block's, plus the head's turn until that laser fires (linear to
-/// the next block's azimuth), plus the laser's own offset.
+/// the next block's azimuth), plus the laser's own offset. A sensor that is
+/// set to a part of the circle jumps over the rest, in the midst of a packet: time has then gone on
+/// by as much as the head needs for it.
 class VelodyneDecoder final : public PacketDecoder {
  public:
   /// Throws std::invalid_argument for an unknown model, a calibration of another number of lasers,

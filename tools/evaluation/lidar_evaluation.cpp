@@ -13,6 +13,7 @@ namespace {
 constexpr double kHalfView = std::numbers::pi / 3.0;  // +-60 degrees
 constexpr double kNearest = 2.0;                      // m
 constexpr double kFarthest = 20.0;                    // m
+constexpr double kLooked = 15.0;                      // m: troubles farther off are no surprise
 constexpr std::array<double, 8> kRangeBins{2.0, 5.0, 7.5, 10.0, 12.5, 15.0, 17.5, 20.0};
 constexpr std::array<double, 6> kColourBins{0.0, 5.0, 7.5, 10.0, 12.5, 15.0};  // of the paper
 
@@ -94,6 +95,7 @@ ScanMatch MatchScan(const std::vector<TrueCone>& cones,
 void LidarFigures::Add(const std::vector<TrueCone>& cones,
                        const std::vector<LidarDetection>& detections, const Eigen::Vector2d& sensor,
                        const std::vector<double>& ms) {
+  Trouble& trouble = troubles_.emplace_back(Trouble{scans_, 0, 0});
   ++scans_;
   const ScanMatch match = MatchScan(cones, detections);
   for (size_t c = 0; c < cones.size(); ++c) {
@@ -108,11 +110,14 @@ void LidarFigures::Add(const std::vector<TrueCone>& cones,
       seen.across = u.x() * error.y() - u.y() * error.x();
       seen.detected = found.colour;
     }
+    trouble.missed += !seen.found && seen.returns >= kFewestReturns && seen.range <= kLooked;
     seen_.push_back(seen);
   }
   for (size_t d = 0; d < detections.size(); ++d) {
     reported_.push_back({detections[d].position.norm(), InView(detections[d].position),
                          match.cone_of_detection[d] == -1});
+    const Reported& reported = reported_.back();
+    trouble.wrong += reported.in_view && reported.is_false && reported.range <= kLooked;
   }
   ms_.resize(std::max(ms_.size(), ms.size()));
   for (size_t i = 0; i < ms.size(); ++i) ms_[i].push_back(ms[i]);
@@ -201,6 +206,18 @@ nlohmann::json LidarFigures::ColourAccuracy() const {
   return bins;
 }
 
+nlohmann::json LidarFigures::ScansToLookAt() const {
+  std::vector<Trouble> worst = troubles_;
+  std::stable_sort(worst.begin(), worst.end(), [](const Trouble& a, const Trouble& b) {
+    return a.missed + a.wrong > b.missed + b.wrong;
+  });
+  nlohmann::json list = nlohmann::json::array();
+  for (size_t i = 0; i < std::min<size_t>(worst.size(), 10); ++i)
+    list.push_back(
+        {{"scan", worst[i].scan}, {"missed", worst[i].missed}, {"false", worst[i].wrong}});
+  return list;
+}
+
 nlohmann::json LidarFigures::ToJson() const {
   std::vector<double> errors;
   for (const Seen& seen : seen_) {
@@ -232,7 +249,8 @@ nlohmann::json LidarFigures::ToJson() const {
           {"ms_median", OrNull(whole)},
           {"stages_ms", stages},
           {"by_range", ranges},
-          {"by_returns", ByReturns()}};
+          {"by_returns", ByReturns()},
+          {"scans_to_look_at", ScansToLookAt()}};
 }
 
 }  // namespace hairpin

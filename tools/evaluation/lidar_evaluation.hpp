@@ -68,10 +68,18 @@ class LidarFigures {
   nlohmann::json RangeBin(double from, double to) const;
   nlohmann::json ByReturns() const;
   nlohmann::json ColourAccuracy() const;
+  nlohmann::json ScansToLookAt() const;
   std::optional<double> Recall(double from, double to) const;
   std::optional<double> Precision(double to, bool everywhere) const;
 
+  struct Trouble {
+    int scan;
+    int missed;  // cones that count for recall within 15 m
+    int wrong;   // false detections within 15 m, in view
+  };
+
   int scans_ = 0;
+  std::vector<Trouble> troubles_;
   std::vector<Seen> seen_;
   std::vector<Reported> reported_;
   std::vector<std::vector<double>> ms_;

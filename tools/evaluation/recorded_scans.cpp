@@ -119,7 +119,8 @@ std::vector<SurveyedCone> LoadSurveyedMap(const std::string& file) {
   if (!stream) throw RecordingError(file + ": cannot be read");
   std::string line;
   std::getline(stream, line);
-  if (line != "x_m,y_m,colour") throw RecordingError(file + ": the header must be x_m,y_m,colour");
+  if (line.substr(0, line.find('\r')) != "x_m,y_m,colour")
+    throw RecordingError(file + ": the header must be x_m,y_m,colour");
   std::vector<SurveyedCone> map;
   for (int number = 2; std::getline(stream, line); ++number) {
     std::istringstream fields(line);

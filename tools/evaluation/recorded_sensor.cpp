@@ -4,17 +4,20 @@
 #include <cmath>
 #include <numbers>
 
+#include "daemons/lidar_cone_detector/body_box.hpp"
+
 namespace hairpin {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr int kRings = 64;
-constexpr float kLowest = -22.5f * kPi / 180.0f;  // elevation of ring 0; the highest looks level
-constexpr float kRingStep = -kLowest / (kRings - 1);
+constexpr float kLowest = -22.05f * kPi / 180.0f;  // elevation of ring 0
+constexpr float kRingStep = 0.345f * kPi / 180.0f;
 constexpr float kAzimuthStep = 2.0f * kPi / 1024.0f;
 constexpr float kRevolution = 0.05f;  // s
 const Eigen::Vector3f kMount(1.03f, 0.0f, 0.49f);
-constexpr float kPitch = 0.018f;  // nose down
+// Where nothing but its own wings and wheels ever returned anything from above the ground.
+constexpr BodyBox kBody{-3.0f, 1.6f, 0.95f};
+constexpr float kPitch = -0.018f;  // looks up
 
 // Where the point was in base when it was fired.
 Eigen::Vector3f Skewed(const Eigen::Vector3f& point, const Twist2& velocity, float& age) {
@@ -38,7 +41,9 @@ void RecordedSensor::ToCloud(const RecordedScan& scan, int keep_every, PointClou
   for (size_t i = 0; i < scan.x.size(); ++i) {
     const Eigen::Vector3f point(scan.x[i], scan.y[i], scan.z[i]);
     float age = 0.0f;
-    const Eigen::Vector3f seen = T_sensor_base_ * Skewed(point, scan.velocity, age);
+    const Eigen::Vector3f then = Skewed(point, scan.velocity, age);
+    if (kBody.Contains(then.x(), then.y())) continue;
+    const Eigen::Vector3f seen = T_sensor_base_ * then;
     const float elevation = std::atan2(seen.z(), seen.head<2>().norm());
     const int ring =
         std::clamp(static_cast<int>(std::lround((elevation - kLowest) / kRingStep)), 0, kRings - 1);

@@ -11,10 +11,12 @@ namespace hairpin {
 /// elevation says once the deskewing has been undone.
 class RecordedSensor {
  public:
+  static constexpr int kRings = 64;
+
   RecordedSensor();
 
   /// As the detector takes it. `keep_every`: 1 for all rings, 2 to thin 64 to 32 by elevation.
-  /// Points within the box of the car's own body, with `margin`, are left out.
+  /// Points on the recorded car's own body are left out.
   void ToCloud(const RecordedScan& scan, int keep_every, PointCloud& cloud) const;
   /// What the detector shall know of it, thinned in the same way.
   SensorGeometry Geometry(int keep_every) const;

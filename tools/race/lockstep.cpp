@@ -22,6 +22,7 @@ Lockstep::Lockstep(Transport& transport, SensorLevel level)
   Listen(channels::kDriveCommand);
   Listen(channels::kAsState);
   Listen(channels::kLocalMap);
+  Listen(channels::kGlobalMap);
   Listen(channels::kTrack);
   const bool raw = level == SensorLevel::kRaw;
   if (raw) {
@@ -69,7 +70,10 @@ int64_t Lockstep::Wanted(const std::string& channel, int64_t utime) const {
     const bool both = !answers_.at(front).silent && !answers_.at(top).silent;
     return utime - (both ? kConesAge : kConesAgeOfOne);
   }
-  if (channel != channels::kLocalMap.name && channel != channels::kTrack.name) return utime;
+  const bool answers_cones = channel == channels::kLocalMap.name ||
+                             channel == channels::kGlobalMap.name ||
+                             channel == channels::kTrack.name;
+  if (!answers_cones) return utime;
   int64_t wanted = 0;
   for (const auto& [pipeline, observed] : observed_) {
     if (Uses(mode_, pipeline)) wanted = std::max(wanted, observed);

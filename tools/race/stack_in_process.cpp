@@ -1,4 +1,5 @@
 #include "daemons/boundary_estimator/boundary_estimator_node.hpp"
+#include "daemons/global_mapper/global_mapper_node.hpp"
 #include "daemons/lidar_cone_detector/lidar_cone_detector_node.hpp"
 #include "daemons/lidar_driver/lidar_driver_node.hpp"
 #include "daemons/local_mapper/local_mapper_node.hpp"
@@ -52,6 +53,9 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock, Drivers& driver
       {"local_mapper", Host([](Bus& bus, const Config& config) {
          return LocalMapperNode(LoadLocalMapperParams(config), bus);
        })},
+      {"global_mapper", Host([](Bus& bus, const Config& config) {
+         return GlobalMapperNode(LoadGlobalMapperConfig(config), bus);
+       })},
       {"boundary_estimator", Host([](Bus& bus, const Config& config) {
          return BoundaryEstimatorNode(LoadBoundaryEstimatorParams(config), bus);
        })},
@@ -70,9 +74,9 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock, Drivers& driver
 }  // namespace
 
 const std::vector<std::string>& StackDaemons(SensorLevel level) {
-  static const std::vector<std::string> kCones{"velocity_estimator", "watchdog",
-                                               "local_mapper",       "boundary_estimator",
-                                               "path_tracker",       "mission_manager"};
+  static const std::vector<std::string> kCones{
+      "velocity_estimator", "watchdog",     "local_mapper",   "global_mapper",
+      "boundary_estimator", "path_tracker", "mission_manager"};
   static const std::vector<std::string> kRaw = [] {
     std::vector<std::string> names{"lidar_driver_front", "lidar_driver_top", "lidar_cone_detector"};
     names.insert(names.end(), kCones.begin(), kCones.end());

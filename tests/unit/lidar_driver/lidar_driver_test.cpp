@@ -100,7 +100,7 @@ TEST_F(Vlp32cDriver, RefusesAndCountsWhatIsMalformed) {
   Put(bad, 1102, 36000, 2);
   EXPECT_EQ(ReasonOf(bad), Refusal::kAzimuth);
   bad = packet;
-  Put(bad, 602, 18000, 2);
+  bad[1204] = 0x39;  // dual: blocks must come in pairs
   EXPECT_EQ(ReasonOf(bad), Refusal::kAzimuth);
   bad = packet;
   Put(bad, 1200, 3'600'000'000u, 4);
@@ -236,6 +236,19 @@ TEST(RmcSentence, IsRefusedUnlessItIsWhole) {
   EXPECT_FALSE(ParseRmcTime("$GPRMC,0818"));
   EXPECT_FALSE(ParseRmcTime(""));
   EXPECT_FALSE(ParseRmcTime("$*00"));
+}
+
+TEST(VelodyneDecoder, LetsTimeGoOnOverAJumpOfASensorThatIsSetToAPartOfTheCircle) {
+  const VelodyneDecoder decoder(Vlp32c());
+  VelodyneSource source;
+  Bytes packet = source.Next();
+  for (size_t block = 6; block < 12; ++block)
+    Put(packet, 100 * block + 2, static_cast<uint64_t>(18000 + 20 * block), 2);
+  DecodedPacket decoded;
+  ASSERT_FALSE(decoder.Decode(packet, decoded));
+  EXPECT_NEAR(decoded.columns[5].time, 5 * 55.296e-6, 1e-7);
+  EXPECT_NEAR(decoded.columns[6].time, 0.05, 0.001);
+  EXPECT_NEAR(decoded.column_turn, 19.9, 0.2);
 }
 
 TEST(VelodyneDecoder, RefusesParametersThatCannotBe) {
