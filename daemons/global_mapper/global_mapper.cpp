@@ -104,11 +104,21 @@ GlobalMapper::Outcome GlobalMapper::Map(const LocalMapInput& map) {
   estimate.pose_covariance = map_.last_covariance() + motion.covariance;
   estimate.cones = map_.Cones();
   estimate.keyframes = static_cast<int>(map_.graph().num_poses());
+  estimate.laps = laps_;
   CountLapsOfMap(was_closed, estimate.T_map_base,
                  map_.odometer() + motion.T_from_to.position().norm());
+  if (laps_ > estimate.laps) outcome.driven = Driven();
   estimate.laps = laps_;
   outcome.estimate = std::move(estimate);
   return outcome;
+}
+
+std::vector<Eigen::Vector2d> GlobalMapper::Driven() const {
+  std::vector<Eigen::Vector2d> driven;
+  const PoseLandmarkGraph& graph = map_.graph();
+  for (size_t i = graph.first_pose(); i < graph.end_pose(); ++i)
+    driven.push_back(graph.pose(i).position());
+  return driven;
 }
 
 GlobalMapEstimate GlobalMapper::Estimate(const LocalMapInput& map, const Pose2& T_map_base) const {

@@ -1,5 +1,6 @@
 #include "daemons/global_mapper/conversion.hpp"
 #include "daemons/global_mapper/global_mapper_node.hpp"
+#include "daemons/global_mapper/race_line_sender.hpp"
 
 namespace hairpin {
 namespace {
@@ -109,8 +110,19 @@ GlobalMapperConfig LoadGlobalMapperConfig(const Config& config) {
   result.params.localiser = LoadLocaliser(config.Section("localisation"));
   result.params.odometry = LoadOdometry(config.Section("odometry"));
   result.params.min_lap_distance = config.Number("min_lap_distance_m", kPositive);
-  result.store = LoadStore(config.Section("files"));
+  const Config files = config.Section("files");
+  result.store = LoadStore(files);
+  const std::string known_map = files.Text("known_map");
+  const Config race_line = config.Section("race_line");
+  result.race_line = LoadRaceLineParams(race_line);
+  result.race_line_ahead = race_line.Number("ahead_m", {20.0, 200.0});
   config.Finish();
+  if (known_map == "none") return result;
+  try {
+    result.known_map = LoadMapFile(known_map);
+  } catch (const MapFileError& error) {
+    throw ConfigError(error.what());
+  }
   return result;
 }
 

@@ -15,6 +15,7 @@ namespace {
 constexpr int kVersion = 1;
 constexpr double kMaxCoordinate = 1e5;  // m
 constexpr size_t kMaxCones = 5000;
+constexpr size_t kMaxDriven = 20000;
 
 std::string Pair(const Eigen::Vector2d& point) {
   std::ostringstream text;
@@ -121,7 +122,10 @@ std::string ToYaml(const MapFile& map) {
   } else {
     out << "null  # no gate of large orange cones was mapped\n";
   }
-  out << "# probability: unknown, blue, yellow, orange, orange_large; covariance: xx, xy, "
+  out << "# positions of the car, in driving order\ndriven_m:";
+  if (map.driven.empty()) out << " []";
+  for (const Eigen::Vector2d& point : map.driven) out << "\n  - " << Pair(point);
+  out << "\n# probability: unknown, blue, yellow, orange, orange_large; covariance: xx, xy, "
          "yy\ncones:\n";
   for (const GlobalCone& cone : map.cones) WriteCone(cone, out);
   return out.str();
@@ -156,7 +160,7 @@ MapFile ParseMapFile(const std::string& text, const std::string& file) {
   }
   const Reader reader(file);
   reader.RequireKeys(
-      root, {"hairpin_map", "session", "utime", "laps", "start", "finish_line_m", "cones"});
+      root, {"hairpin_map", "session", "utime", "laps", "start", "finish_line_m", "driven_m", "cones"});
   if (reader.Value<int>(root["hairpin_map"], "hairpin_map") != kVersion)
     reader.Refuse(root["hairpin_map"], "another version of the format");
   MapFile map;
@@ -171,6 +175,10 @@ MapFile ParseMapFile(const std::string& text, const std::string& file) {
     map.gate =
         MapGate{reader.Point(line[0], "finish_line_m"), reader.Point(line[1], "finish_line_m")};
   }
+  const YAML::Node driven = root["driven_m"];
+  if (!driven.IsSequence() || driven.size() > kMaxDriven)
+    reader.Refuse(driven, "driven_m is no list, or too long");
+  for (const auto& point : driven) map.driven.push_back(reader.Point(point, "driven_m"));
   const YAML::Node cones = root["cones"];
   if (!cones.IsSequence() || cones.size() > kMaxCones)
     reader.Refuse(cones, "cones is no list, or too long");

@@ -28,6 +28,7 @@ struct MapFile {
   std::optional<MapGate>
       gate;  // start/finish line; none where no gate of large orange cones is mapped
   std::vector<GlobalCone> cones;
+  std::vector<Eigen::Vector2d> driven{};  // the way of base when the map was made, from its start
 };
 
 /// YAML for people and machines; positions to 0.1 mm, all the rest too. Written beside `file` and

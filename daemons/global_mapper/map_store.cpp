@@ -50,15 +50,21 @@ void MapStore::Keep(const GlobalMapper::Outcome& outcome, int64_t session) {
   }
   if (outcome.estimate && outcome.estimate->phase == MapPhase::kLoopClosed &&
       outcome.estimate->laps > saved_laps_)
-    Save(*outcome.estimate, session);
+    Save(outcome, session);
 }
 
-void MapStore::Save(const GlobalMapEstimate& estimate, int64_t session) {
+void MapStore::Save(const GlobalMapper::Outcome& outcome, int64_t session) {
+  const GlobalMapEstimate& estimate = *outcome.estimate;
   saved_laps_ = estimate.laps;
+  MapFile map;
+  map.session = session;
+  map.utime = estimate.utime;
+  map.laps = estimate.laps;
+  map.gate = FindMapGate(estimate.cones);
+  map.driven = outcome.driven;
+  map.cones = estimate.cones;
   try {
-    SaveMapFile(
-        {session, estimate.utime, estimate.laps, {}, FindMapGate(estimate.cones), estimate.cones},
-        map_file());
+    SaveMapFile(map, map_file());
   } catch (const std::runtime_error& error) {
     problem_ = error.what();
   }

@@ -32,7 +32,7 @@ class MapStore {
   std::string map_file() const { return params_.directory + "/map.yaml"; }
 
  private:
-  void Save(const GlobalMapEstimate& estimate, int64_t session);
+  void Save(const GlobalMapper::Outcome& outcome, int64_t session);
 
   MapStoreParams params_;
   std::unique_ptr<Journal> journal_;

@@ -33,16 +33,19 @@ struct RaceRun {
 /// One race in this process, as `tools/drive --in-process` runs it.
 inline RaceRun RunInProcess(const std::string& track_file, uint64_t seed,
                             const std::vector<std::string>& faults = {},
-                            const std::vector<std::string>& overrides = {}) {
+                            const std::vector<std::string>& overrides = {},
+                            SensorLevel level = SensorLevel::kCones) {
   const TemporaryFolder folder;
   RaceOptions options;
   options.track = LoadTrack(track_file);
   options.seed = seed;
   options.in_process = true;
   options.speed = 0.0;
-  for (const std::string& text : faults) options.faults.push_back(ParseFault(text, FaultSources()));
+  for (const std::string& text : faults)
+    options.faults.push_back(ParseFault(text, FaultSources(level)));
   options.stack.config_dir = std::string(HAIRPIN_SOURCE_DIR) + "/config";
   options.stack.overrides = overrides;
+  options.stack.level = level;
   options.log_file = folder.File("log.lcmlog");
   const int never = 0;
   RaceRun run;

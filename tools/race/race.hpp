@@ -20,6 +20,7 @@ struct RaceOptions {
   std::vector<Fault> faults;
   StackOptions stack;
   std::string log_file;
+  bool log_scans = false;  // LIDAR_FRONT and LIDAR_TOP too: 12 MB a second
 };
 
 struct RaceOutcome {
@@ -31,7 +32,7 @@ struct RaceOutcome {
 };
 
 /// The sources that a fault may name: the simulator's, and the daemons.
-std::vector<std::string> FaultSources();
+std::vector<std::string> FaultSources(SensorLevel level = SensorLevel::kCones);
 
 /// Runs simulator and stack until the race is over or `stop` becomes non-zero. Throws ConfigError,
 /// or std::runtime_error where a daemon cannot be kept alive.

@@ -67,6 +67,7 @@ std::map<std::string, Take> Takers(RunLog& log) {
           {channels::kTrack.name, Into(log.tracks)},
           {channels::kPipelineStatus.name, Into(log.pipeline_status)},
           {channels::kAsState.name, Into(log.as_states)},
+          {channels::kRaceLine.name, Into(log.race_lines)},
           {channels::kDriveCommand.name, Into(log.drive_commands)},
           {channels::kVelocity.name, Into(log.velocities)},
           {channels::kConesFusion.name, Into(log.cones_fusion)},
@@ -81,6 +82,7 @@ void SortAll(RunLog& log) {
   SortByTime(log.tracks);
   SortByTime(log.pipeline_status);
   SortByTime(log.as_states);
+  SortByTime(log.race_lines);
   SortByTime(log.drive_commands);
   SortByTime(log.velocities);
   SortByTime(log.cones_fusion);

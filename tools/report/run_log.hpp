@@ -19,6 +19,7 @@ struct RunLog {
   std::vector<track_t> tracks;
   std::vector<pipeline_status_t> pipeline_status;
   std::vector<as_state_t> as_states;
+  std::vector<race_line_t> race_lines;
   std::vector<drive_command_t> drive_commands;
   std::vector<velocity_t> velocities;
   std::vector<cones_t> cones_fusion;

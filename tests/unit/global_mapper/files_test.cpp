@@ -121,6 +121,7 @@ MapFile SomeMap() {
   cone.colour = {0.1, 0.8, 0.1, 0.0, 0.0};
   cone.num_observations = 77;
   map.cones = {cone, cone};
+  map.driven = {{0.0, 0.0}, {1.25, -0.5}};
   return map;
 }
 
@@ -133,6 +134,8 @@ TEST(MapFile, IsReadBackAsItWasWritten) {
   ASSERT_EQ(map.cones.size(), 2u);
   EXPECT_NEAR(map.cones[0].position.x(), 12.3456, 1e-9);
   EXPECT_EQ(MostProbable(map.cones[0].colour), ConeColour::kBlue);
+  ASSERT_EQ(map.driven.size(), 2u);
+  EXPECT_NEAR(map.driven[1].x(), 1.25, 1e-9);
   ASSERT_TRUE(map.gate);
   EXPECT_NEAR(map.gate->left.y(), 1.5, 1e-9);
 }
@@ -153,6 +156,7 @@ TEST(MapFile, ThatIsWrongIsRefusedWithItsLine) {
   EXPECT_NE(problem("1.0000e-02", "-1.0").find("positive definite"), std::string::npos);
   EXPECT_NE(problem("colour: blue", "colour: mauve").find("no such colour"), std::string::npos);
   EXPECT_NE(problem("hairpin_map: 1", "hairpin_map: 9").find("version"), std::string::npos);
+  EXPECT_NE(problem("[1.2500", "[1e9").find("driven_m is out of range"), std::string::npos);
   EXPECT_NE(problem("session: 42", "session: [").find("map.yaml:"), std::string::npos);
 }
 
