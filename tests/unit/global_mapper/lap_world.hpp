@@ -68,7 +68,6 @@ class LapWorld {
     int64_t id = 0;
     double last_seen = 0.0;
     int observations = 0;
-    Eigen::Vector2d position = Eigen::Vector2d::Zero();  // local
   };
 
   /// The track's middle: a bean, driven from zero along x.
@@ -100,7 +99,7 @@ class LapWorld {
       if (base.norm() > 14.0 || base.x() < -2.0) continue;
       Track& track = tracks_[c];
       if (track.observations == 0 || driven_ - track.last_seen > 40.0)
-        track = {next_id_++, 0.0, 0, {}};
+        track = {next_id_++, 0.0, 0};
       track.last_seen = driven_;
       ++track.observations;
       LocalMapCone cone;
