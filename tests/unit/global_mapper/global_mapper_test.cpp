@@ -9,12 +9,15 @@ namespace {
 
 constexpr double kStep = 0.5;  // m between local maps
 
-/// Feeds local maps until the car has driven `distance`.
+/// Feeds local maps until the car has driven `distance`; the first one where it stands, which makes
+/// the map's frame the world's.
 GlobalMapEstimate DriveTo(double distance, LapWorld& world, GlobalMapper& mapper,
                           std::vector<MapRecord>* records = nullptr) {
   GlobalMapEstimate last;
+  double step = world.driven() == 0.0 ? 0.0 : kStep;
   while (world.driven() < distance) {
-    GlobalMapper::Outcome outcome = mapper.AddLocalMap(world.Drive(kStep));
+    GlobalMapper::Outcome outcome = mapper.AddLocalMap(world.Drive(step));
+    step = kStep;
     EXPECT_TRUE(outcome.refused.empty()) << outcome.refused;
     if (outcome.estimate) last = *outcome.estimate;
     if (records != nullptr)
@@ -36,7 +39,7 @@ TEST(GlobalMapper, ClosesTheLoopAndMapsEveryConeOnce) {
 }
 
 TEST(GlobalMapper, ClosesTheLoopWhereTheDriftExceedsTheConeSpacing) {
-  LapWorld world({0.02, 0.0007});
+  LapWorld world({0.04, 0.0016});
   GlobalMapper mapper(ShippedConfig().params);
   const GlobalMapEstimate before = DriveTo(LapWorld::kLap - 15.0, world, mapper);
   ASSERT_EQ(before.phase, MapPhase::kMapping);

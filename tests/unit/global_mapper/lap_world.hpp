@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -98,8 +100,7 @@ class LapWorld {
       const Eigen::Vector2d base = At(driven_).Inverse() * cones_[c];
       if (base.norm() > 14.0 || base.x() < -2.0) continue;
       Track& track = tracks_[c];
-      if (track.observations == 0 || driven_ - track.last_seen > 40.0)
-        track = {next_id_++, 0.0, 0};
+      if (track.observations == 0 || driven_ - track.last_seen > 40.0) track = {next_id_++, 0.0, 0};
       track.last_seen = driven_;
       ++track.observations;
       LocalMapCone cone;
@@ -130,17 +131,24 @@ class LapWorld {
   Pose2 T_local_base_;
 };
 
-/// Distance of each map cone from the nearest true one, the worst [m], the map's frame being the
-/// world's.
+/// Distance of each map cone from the nearest true one, the worst [m], after the rigid alignment
+/// that fits best: how the whole lies in the world is not the map's to know.
 inline double WorstError(const GlobalMapEstimate& estimate, const LapWorld& world) {
-  double worst = 0.0;
-  for (const GlobalCone& cone : estimate.cones) {
-    double nearest = 1e9;
-    for (const auto& truth : world.cones())
-      nearest = std::min(nearest, (truth - cone.position).norm());
-    worst = std::max(worst, nearest);
+  const auto num_cones = static_cast<Eigen::Index>(estimate.cones.size());
+  Eigen::Matrix2Xd mapped(2, num_cones), truth(2, num_cones);
+  for (Eigen::Index i = 0; i < num_cones; ++i) {
+    mapped.col(i) = estimate.cones[static_cast<size_t>(i)].position;
+    const auto nearest =
+        std::min_element(world.cones().begin(), world.cones().end(),
+                         [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+                           return (a - mapped.col(i)).norm() < (b - mapped.col(i)).norm();
+                         });
+    truth.col(i) = *nearest;
   }
-  return worst;
+  const Eigen::Matrix3d T_world_map = Eigen::umeyama(mapped, truth, false);
+  const Eigen::Matrix2Xd aligned =
+      (T_world_map.topLeftCorner<2, 2>() * mapped).colwise() + T_world_map.topRightCorner<2, 1>();
+  return (aligned - truth).colwise().norm().maxCoeff();
 }
 
 }  // namespace hairpin
