@@ -19,7 +19,9 @@ TEST(DeadDaemon, GlobalMapperComesBackWithItsMapAndTheCarDrivesOn) {
   int32_t before = 0;
   for (const global_map_t& map : run.log.global_maps) {
     if (map.utime <= killed) before = map.num_cones;
-    if (map.utime > started) EXPECT_GE(map.num_cones, before);
+    if (map.utime > started) {
+      EXPECT_GE(map.num_cones, before);
+    }
   }
   const auto back = std::find_if(run.log.global_maps.begin(), run.log.global_maps.end(),
                                  [&](const global_map_t& map) { return map.utime > started; });
