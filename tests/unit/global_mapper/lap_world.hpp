@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "common/config.hpp"
@@ -134,21 +134,28 @@ class LapWorld {
 /// Distance of each map cone from the nearest true one, the worst [m], after the rigid alignment
 /// that fits best: how the whole lies in the world is not the map's to know.
 inline double WorstError(const GlobalMapEstimate& estimate, const LapWorld& world) {
-  const auto num_cones = static_cast<Eigen::Index>(estimate.cones.size());
-  Eigen::Matrix2Xd mapped(2, num_cones), truth(2, num_cones);
-  for (Eigen::Index i = 0; i < num_cones; ++i) {
-    mapped.col(i) = estimate.cones[static_cast<size_t>(i)].position;
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> pairs;  // mapped, true
+  Eigen::Vector2d mapped_mean = Eigen::Vector2d::Zero(), true_mean = Eigen::Vector2d::Zero();
+  for (const GlobalCone& cone : estimate.cones) {
+    const auto distance = [&cone](const Eigen::Vector2d& p) { return (p - cone.position).norm(); };
     const auto nearest =
         std::min_element(world.cones().begin(), world.cones().end(),
-                         [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-                           return (a - mapped.col(i)).norm() < (b - mapped.col(i)).norm();
-                         });
-    truth.col(i) = *nearest;
+                         [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    pairs.emplace_back(cone.position, *nearest);
+    mapped_mean += cone.position / static_cast<double>(estimate.cones.size());
+    true_mean += *nearest / static_cast<double>(estimate.cones.size());
   }
-  const Eigen::Matrix3d T_world_map = Eigen::umeyama(mapped, truth, false);
-  const Eigen::Matrix2Xd aligned =
-      (T_world_map.topLeftCorner<2, 2>() * mapped).colwise() + T_world_map.topRightCorner<2, 1>();
-  return (aligned - truth).colwise().norm().maxCoeff();
+  double sine = 0.0, cosine = 0.0;
+  for (auto& [mapped, truth] : pairs) {
+    mapped -= mapped_mean;
+    truth -= true_mean;
+    sine += mapped.x() * truth.y() - mapped.y() * truth.x();
+    cosine += mapped.dot(truth);
+  }
+  const Pose2 turn{0.0, 0.0, std::atan2(sine, cosine)};
+  double worst = 0.0;
+  for (const auto& [mapped, truth] : pairs) worst = std::max(worst, (turn * mapped - truth).norm());
+  return worst;
 }
 
 }  // namespace hairpin
