@@ -24,7 +24,7 @@ TEST(LostLocalisation, MeansDrivingOnSightToTheEndWithoutAStepOfTheSteering) {
       ASSERT_EQ(command.on_race_line, 0) << since;
     }
     // No more than a new TRACK makes on sight; the rate limit is 0.04.
-    if (std::abs(since) < 2.0) {
+    if (std::abs(since) < 1.0) {
       const double last = run.log.drive_commands[i - 1].steering_angle_rad;
       EXPECT_LT(std::abs(command.steering_angle_rad - last), 0.036) << since;
     }
