@@ -4,6 +4,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "common/can/can_frame.hpp"
 #include "common/can/checksum.hpp"
@@ -11,13 +13,13 @@
 
 namespace hairpin::dbc {
 
-/// Name of the first signal outside its range (NaN is), empty if none is.
+/// Name of a signal outside its range (NaN is); empty if none is.
 template <class M>
-std::string OutOfRange(const M& message) {
-  std::string found;
+std::string_view OutOfRange(const M& message) {
+  std::string_view found;
   M::VisitSignals(message, [&found](const char* name, auto value, const Range& range) {
     const auto physical = static_cast<double>(value);
-    if (found.empty() && !(physical >= range.min && physical <= range.max)) found = name;
+    if (!(physical >= range.min && physical <= range.max)) found = name;
   });
   return found;
 }
@@ -39,8 +41,10 @@ M Saturated(M message) {
 /// std::invalid_argument, naming the signal, for a value outside its range.
 template <class M>
 CanFrame Pack(const M& message) {
-  if (const std::string signal = OutOfRange(message); !signal.empty())
-    throw std::invalid_argument(std::string(M::kName) + ": " + signal + " is out of range");
+  if (const std::string_view signal = OutOfRange(message); !signal.empty()) {
+    throw std::invalid_argument(std::string(M::kName).append(": ").append(signal) +
+                                " is out of range");
+  }
   const uint64_t bits = M::ToBits(message);
   CanFrame frame{M::kId, M::kLength, {}};
   for (size_t i = 0; i < M::kLength; ++i) frame.data[i] = static_cast<uint8_t>(bits >> 8 * i);
@@ -59,7 +63,8 @@ std::string Unpack(const CanFrame& frame, M& message) {
   uint64_t bits = 0;
   for (size_t i = 0; i < M::kLength; ++i) bits |= uint64_t{frame.data[i]} << 8 * i;
   const M unpacked = M::FromBits(bits);
-  if (const std::string signal = OutOfRange(unpacked); !signal.empty()) return "range of " + signal;
+  if (const std::string_view signal = OutOfRange(unpacked); !signal.empty())
+    return std::string("range of ").append(signal);
   message = unpacked;
   return {};
 }
