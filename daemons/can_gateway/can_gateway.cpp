@@ -102,7 +102,7 @@ void CanGateway::OnCones(int local, int global) {
 }
 
 void CanGateway::Judge(int64_t wall) {
-  SupervisionInput input;
+  CarSituation input;
   input.now = Now(wall);
   input.bus_silence = decoder_.clock().Silence(wall);
   input.bus = bus_;

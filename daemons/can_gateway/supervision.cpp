@@ -61,7 +61,7 @@ DeadmanStage Supervision::StageOfCommand(int64_t now) const {
   return StageAt(SecondsBetween(since, now), params_.deadman);
 }
 
-std::string Supervision::FindEmergency(const SupervisionInput& input) const {
+std::string Supervision::FindEmergency(const CarSituation& input) const {
   if (as_.state == as_state_t::STATE_EMERGENCY) return "AS Emergency";
   if (!armed()) return {};
   if (!was_safe_) return "the car drove when this daemon started";
@@ -82,7 +82,7 @@ std::string Supervision::FindEmergency(const SupervisionInput& input) const {
   return {};
 }
 
-std::string Supervision::FindStop(const SupervisionInput& input) {
+std::string Supervision::FindStop(const CarSituation& input) {
   if (!driving()) return {};
   if (input.actuators != ActuatorVerdict::kAgree) actuator_stop_ = true;
   if (actuator_stop_) return "actuators disagree: " + input.culprit;
@@ -90,7 +90,7 @@ std::string Supervision::FindStop(const SupervisionInput& input) {
   return {};
 }
 
-void Supervision::Judge(const SupervisionInput& input) {
+void Supervision::Judge(const CarSituation& input) {
   stage_ = StageOfCommand(input.now);
   if (emergency_.empty()) emergency_ = FindEmergency(input);
   if (!emergency_.empty()) stage_ = DeadmanStage::kSilent;

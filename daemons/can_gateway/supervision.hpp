@@ -18,7 +18,7 @@ struct SupervisionParams {
 };
 
 /// What there is to know at one time.
-struct SupervisionInput {
+struct CarSituation {
   int64_t now = 0;           // car time
   double bus_silence = 0.0;  // s of wall
   CanState bus = CanState::kActive;
@@ -44,7 +44,7 @@ class Supervision {
   void HearCommand(int64_t utime) { command_utime_ = utime; }
 
   /// To be called before the next four are asked.
-  void Judge(const SupervisionInput& input);
+  void Judge(const CarSituation& input);
   DeadmanStage stage() const { return stage_; }
   /// Why the car stops by itself, empty if it does not: no torque, service brake.
   const std::string& stop() const { return stop_; }
@@ -62,8 +62,8 @@ class Supervision {
  private:
   bool armed() const;
   bool IsFresh(int64_t utime, int64_t now) const;
-  std::string FindEmergency(const SupervisionInput& input) const;
-  std::string FindStop(const SupervisionInput& input);
+  std::string FindEmergency(const CarSituation& input) const;
+  std::string FindStop(const CarSituation& input);
   DeadmanStage StageOfCommand(int64_t now) const;
 
   SupervisionParams params_;

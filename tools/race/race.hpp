@@ -18,6 +18,8 @@ struct RaceOptions {
   double speed = 1.0;  // at most this many times real time; 0: as fast as it goes
   std::vector<Fault> faults;
   StackOptions stack;
+  /// The simulated car speaks CAN, and can_gateway runs between it and the rest.
+  bool can = false;
   std::string log_file;
 };
 
@@ -30,7 +32,7 @@ struct RaceOutcome {
 };
 
 /// The sources that a fault may name: the simulator's, and the daemons.
-std::vector<std::string> FaultSources();
+std::vector<std::string> FaultSources(bool can = false);
 
 /// Runs simulator and stack until the race is over or `stop` becomes non-zero. Throws ConfigError,
 /// or std::runtime_error where a daemon cannot be kept alive.

@@ -21,6 +21,7 @@ struct Arguments {
   uint64_t seed = 1;
   int laps = 1;
   bool in_process = false;
+  bool can = false;
   double speed = -1.0;  // not given
   double speed_cap = 0.0;
   std::vector<std::string> faults;
@@ -53,6 +54,8 @@ void Define(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--in-process", arguments.in_process,
                "all daemons in one process, on memq://; repeatable to the byte");
+  app.add_flag("--can", arguments.can,
+               "the car speaks CAN, and can_gateway runs between it and the rest");
   app.add_option("--set", arguments.overrides,
                  "DAEMON.KEY=VALUE in place of a config file's value (repeatable)")
       ->allow_extra_args(false);
@@ -83,7 +86,8 @@ RaceOptions ToOptions(const Arguments& arguments) {
   options.seed = arguments.seed;
   options.in_process = arguments.in_process;
   options.speed = arguments.speed >= 0.0 ? arguments.speed : arguments.in_process ? 0.0 : 1.0;
-  const std::vector<std::string> sources = FaultSources();
+  options.can = arguments.can;
+  const std::vector<std::string> sources = FaultSources(options.can);
   for (const std::string& text : arguments.faults)
     options.faults.push_back(ParseFault(text, sources));
   options.stack = {arguments.config_dir, arguments.program_dir, arguments.out, arguments.overrides};

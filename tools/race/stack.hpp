@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/can/memory_can_bus.hpp"
 #include "common/clock.hpp"
 #include "common/daemon.hpp"
 
@@ -20,7 +21,14 @@ struct StackOptions {
   std::string log_dir;      // for what they write to stderr
   /// "daemon.key=value" in place of what the daemon's config file says.
   std::vector<std::string> overrides;
+  /// Daemons besides those: the drivers of what the simulator sends by the sensors' own protocols.
+  std::vector<std::string> drivers{};
+  /// The bus of can_gateway where all run in one process; must outlive the stack.
+  MemoryCanBus* can_bus = nullptr;
 };
+
+/// StackDaemons() and the drivers.
+std::vector<std::string> DaemonsOf(const StackOptions& options);
 
 /// The daemons as a whole, whichever way they run.
 class Stack {

@@ -1,4 +1,5 @@
 #include "daemons/boundary_estimator/boundary_estimator_node.hpp"
+#include "daemons/can_gateway/can_gateway_node.hpp"
 #include "daemons/local_mapper/local_mapper_node.hpp"
 #include "daemons/mission_manager/mission_manager_node.hpp"
 #include "daemons/path_tracker/path_tracker_node.hpp"
@@ -10,7 +11,7 @@
 namespace hairpin {
 namespace {
 
-std::map<std::string, NodeFactory> Factories(const Clock& clock) {
+std::map<std::string, NodeFactory> Factories(const Clock& clock, MemoryCanBus* can_bus) {
   return {
       {"velocity_estimator", Host([](Bus& bus, const Config& config) {
          return VelocityEstimatorNode(LoadVelocityEstimatorParams(config), bus);
@@ -30,6 +31,10 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock) {
       {"watchdog", Host([&clock](Bus& bus, const Config& config) {
          return WatchdogNode(LoadWatchdogParams(config), bus, clock);
        })},
+      {"can_gateway", Host([&clock, can_bus](Bus& bus, const Config& config) {
+         return CanGatewayNode(LoadCanGatewayConfig(config).gateway, bus, can_bus->Attach(clock),
+                               clock);
+       })},
   };
 }
 
@@ -42,9 +47,15 @@ const std::vector<std::string>& StackDaemons() {
   return names;
 }
 
+std::vector<std::string> DaemonsOf(const StackOptions& options) {
+  std::vector<std::string> names = StackDaemons();
+  names.insert(names.end(), options.drivers.begin(), options.drivers.end());
+  return names;
+}
+
 InProcessStack::InProcessStack(const StackOptions& options, Transport& transport)
-    : options_(options), transport_(transport), factories_(Factories(clock_)) {
-  for (const std::string& name : StackDaemons()) SetDaemon(name, true);
+    : options_(options), transport_(transport), factories_(Factories(clock_, options.can_bus)) {
+  for (const std::string& name : DaemonsOf(options)) SetDaemon(name, true);
 }
 
 void InProcessStack::SetDaemon(const std::string& name, bool on) {
@@ -70,7 +81,7 @@ void InProcessStack::SetDaemon(const std::string& name, bool on) {
 
 void InProcessStack::Tend(int64_t utime) {
   clock_.Set(utime);
-  for (const std::string& name : StackDaemons()) {
+  for (const std::string& name : DaemonsOf(options_)) {
     if (const auto member = members_.find(name); member != members_.end())
       member->second.node->Poll();
   }

@@ -49,7 +49,7 @@ std::string Tail(const std::string& file) {
 
 ProcessStack::ProcessStack(const StackOptions& options, const std::string& lcm_url)
     : options_(options), lcm_url_(lcm_url) {
-  for (const std::string& name : StackDaemons()) Start(name, processes_[name]);
+  for (const std::string& name : DaemonsOf(options)) Start(name, processes_[name]);
 }
 
 ProcessStack::~ProcessStack() {
