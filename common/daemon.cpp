@@ -1,10 +1,12 @@
 #include "common/daemon.hpp"
 
+#include <poll.h>
 #include <systemd/sd-daemon.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <iostream>
 #include <random>
 
@@ -37,9 +39,10 @@ struct Options {
   std::string config_dir = "config";
   std::string lcm_url = kDefaultLcmUrl;
   std::vector<std::string> overrides;
+  std::string instance;
 };
 
-void DefineOptions(CLI::App& app, Options& options) {
+void DefineOptions(CLI::App& app, const DaemonSpec& spec, Options& options) {
   app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")
       ->capture_default_str()
       ->envname("HAIRPIN_CONFIG_DIR");
@@ -49,13 +52,39 @@ void DefineOptions(CLI::App& app, Options& options) {
   app.add_option("--set", options.overrides,
                  "KEY=VALUE in place of the config file's value (repeatable)")
       ->allow_extra_args(false);
+  if (!spec.instances.empty()) {
+    app.add_option("--instance", options.instance, "which of the car's")
+        ->required()
+        ->check(CLI::IsMember(spec.instances));
+  }
+  for (const DaemonOption& option : spec.options)
+    app.add_option(option.name, *option.value, option.help);
   app.set_version_flag("--version", BuildId());
 }
 
-void Work(const std::string& name, const Options& options, const NodeFactory& factory) {
-  const Config config = Config::Load(options.config_dir, name, options.overrides);
+std::string NameOnBus(const DaemonSpec& spec, const Options& options) {
+  return options.instance.empty() ? spec.name : spec.name + "_" + options.instance;
+}
+
+// Waits for a message, which it handles, or for one of the node's descriptors.
+void Wait(Transport& transport, const HostedNode& node) {
+  const int timeout_ms = node.has_poll() ? kPollPeriodMs : kIdlePeriodMs;
+  const std::vector<int> descriptors = node.descriptors();
+  if (descriptors.empty()) {
+    transport.Handle(timeout_ms);
+    return;
+  }
+  std::vector<pollfd> waiting{{transport.descriptor(), POLLIN, 0}};
+  for (const int descriptor : descriptors) waiting.push_back({descriptor, POLLIN, 0});
+  if (poll(waiting.data(), waiting.size(), timeout_ms) < 0 && errno != EINTR)
+    throw std::runtime_error(std::string("poll failed: ") + std::strerror(errno));
+  if (waiting.front().revents != 0) transport.Handle(0);
+}
+
+void Work(const DaemonSpec& spec, const Options& options, const NodeFactory& factory) {
+  const Config config = Config::Load(options.config_dir, spec.name, options.overrides);
   Transport transport(options.lcm_url);
-  Bus bus(transport, name, RandomBootId());
+  Bus bus(transport, NameOnBus(spec, options), RandomBootId());
   Heartbeat heartbeat(bus);
   const std::unique_ptr<HostedNode> node = factory(bus, config);
   sd_notify(0, "READY=1");
@@ -63,7 +92,7 @@ void Work(const std::string& name, const Options& options, const NodeFactory& fa
   int64_t last_beat = clock.NowMicros();
   int64_t last_utime = 0;
   while (stop_requested == 0) {
-    transport.Handle(node->has_poll() ? kPollPeriodMs : kIdlePeriodMs);
+    Wait(transport, *node);
     node->Poll();
     sd_notify(0, "WATCHDOG=1");
     // Heartbeats follow data time. Where that stands still, even if others' heartbeats are heard,
@@ -109,18 +138,19 @@ void Heartbeat::Send() {
   bus_.Publish(channels::kHeartbeat, message);
 }
 
-int RunHosted(const std::string& name, int argc, char** argv, const NodeFactory& factory) {
-  CLI::App app("hairpin " + name + ": see daemons/" + name + "/README.md", name);
+int RunHosted(const DaemonSpec& spec, int argc, char** argv, const NodeFactory& factory) {
+  CLI::App app("hairpin " + spec.name + ": see daemons/" + spec.name + "/README.md", spec.name);
   Options options;
-  DefineOptions(app, options);
+  DefineOptions(app, spec, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
   CatchSignals();
+  const std::string name = NameOnBus(spec, options);
   try {
-    Work(name, options, factory);
+    Work(spec, options, factory);
     return 0;
   } catch (const ConfigError& error) {
     return Fail(name, error.what(), kExitConfig);

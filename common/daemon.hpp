@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "common/bus.hpp"
 #include "common/config.hpp"
@@ -27,6 +28,9 @@ class HostedNode {
   /// none come.
   virtual void Poll() {}
   virtual bool has_poll() const { return false; }
+  /// What the node's `descriptors()` says, if it has one: sockets and ports that it reads from in
+  /// `Poll()`, which is then called as soon as one is readable. May change between calls.
+  virtual std::vector<int> descriptors() const { return {}; }
 };
 
 using NodeFactory = std::function<std::unique_ptr<HostedNode>(Bus&, const Config&)>;
@@ -43,6 +47,10 @@ NodeFactory Host(Make make) {
     }
     bool has_poll() const override {
       return requires(Node & node) { node.Poll(); };
+    }
+    std::vector<int> descriptors() const override {
+      if constexpr (requires(const Node& node) { node.descriptors(); }) return node_.descriptors();
+      return {};
     }
 
    private:
@@ -67,14 +75,35 @@ class Heartbeat {
   int64_t last_sent_utime_ = 0;
 };
 
+/// An option of the command line that only one daemon has.
+struct DaemonOption {
+  std::string name;  // "--pcap"
+  std::string help;
+  std::string* value;  // is set before the node is made
+};
+
+/// What is to be known of a daemon before its command line is read.
+struct DaemonSpec {
+  std::string name;  // of its folder, its config file
+  /// For a daemon that runs several times on one car: `--instance` must give one of these, and
+  /// NAME_INSTANCE is what it is called on the bus (Bus::daemon()).
+  std::vector<std::string> instances{};
+  std::vector<DaemonOption> options{};
+};
+
 /// The whole life of a daemon: arguments (--help), signals, config, bus, node, heartbeat, sd_notify
 /// from the work loop. Returns the exit code: 0 after SIGINT or SIGTERM, 1 cannot run, 2 wrong
 /// usage, 78 bad config.
-int RunHosted(const std::string& name, int argc, char** argv, const NodeFactory& factory);
+int RunHosted(const DaemonSpec& spec, int argc, char** argv, const NodeFactory& factory);
+
+template <class Make>
+int RunDaemon(const DaemonSpec& spec, int argc, char** argv, Make make) {
+  return RunHosted(spec, argc, argv, Host(make));
+}
 
 template <class Make>
 int RunDaemon(const std::string& name, int argc, char** argv, Make make) {
-  return RunHosted(name, argc, argv, Host(make));
+  return RunDaemon(DaemonSpec{name}, argc, argv, make);
 }
 
 }  // namespace hairpin

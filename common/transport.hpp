@@ -28,6 +28,8 @@ class Transport {
   bool Handle(int timeout_ms);
   /// Handles messages until none is waiting, the ones published meanwhile included.
   void Drain();
+  /// Readable while a message waits: for whom waits on other descriptors too.
+  int descriptor() { return lcm_.getFileno(); }
 
   using RawHandler =
       std::function<void(const std::string& channel, const uint8_t* data, size_t size)>;

@@ -1,20 +1,14 @@
 #pragma once
 
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/geometry.hpp"
 #include "daemons/boundary_estimator/boundary_estimator.hpp"
+#include "tools/evaluation/recording_error.hpp"
 
 namespace hairpin {
-
-/// A recording that cannot be used: "file: frame N: key: reason".
-class RecordingError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// One moment of a recorded run, all in its map frame.
 struct RecordedFrame {

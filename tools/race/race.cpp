@@ -161,7 +161,11 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
   if (options.in_process) {
     stack = std::make_unique<InProcessStack>(stack_options, transport);
   } else {
-    stack = std::make_unique<ProcessStack>(stack_options, transport.url());
+    if (options.attach) {
+      stack = std::make_unique<AttachedStack>();
+    } else {
+      stack = std::make_unique<ProcessStack>(stack_options, transport.url());
+    }
     AwaitDaemons(transport, daemons, *stack, stop);
     lockstep.emplace(transport);
   }

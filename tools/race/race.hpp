@@ -15,7 +15,8 @@ struct RaceOptions {
   Track track;
   uint64_t seed = 1;
   bool in_process = false;
-  double speed = 1.0;  // at most this many times real time; 0: as fast as it goes
+  bool attach = false;  // to daemons that run already, instead of starting them
+  double speed = 1.0;   // at most this many times real time; 0: as fast as it goes
   std::vector<Fault> faults;
   StackOptions stack;
   /// The simulated car speaks CAN, and can_gateway runs between it and the rest.

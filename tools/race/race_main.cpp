@@ -22,6 +22,7 @@ struct Arguments {
   int laps = 1;
   bool in_process = false;
   bool can = false;
+  bool attach = false;
   double speed = -1.0;  // not given
   double speed_cap = 0.0;
   std::vector<std::string> faults;
@@ -56,6 +57,9 @@ void Define(CLI::App& app, Arguments& arguments) {
                "all daemons in one process, on memq://; repeatable to the byte");
   app.add_flag("--can", arguments.can,
                "the car speaks CAN, and can_gateway runs between it and the rest");
+  app.add_flag("--attach", arguments.attach,
+               "drive with the daemons that run here already (systemd's) and their own configs")
+      ->excludes("--in-process");
   app.add_option("--set", arguments.overrides,
                  "DAEMON.KEY=VALUE in place of a config file's value (repeatable)")
       ->allow_extra_args(false);
@@ -85,9 +89,11 @@ RaceOptions ToOptions(const Arguments& arguments) {
   options.track = LoadTrack(TrackFile(arguments));
   options.seed = arguments.seed;
   options.in_process = arguments.in_process;
+  options.attach = arguments.attach;
   options.speed = arguments.speed >= 0.0 ? arguments.speed : arguments.in_process ? 0.0 : 1.0;
   options.can = arguments.can;
-  const std::vector<std::string> sources = FaultSources(options.can);
+  const std::vector<std::string> sources =
+      arguments.attach ? Simulator::Sources() : FaultSources(options.can);
   for (const std::string& text : arguments.faults)
     options.faults.push_back(ParseFault(text, sources));
   options.stack = {arguments.config_dir, arguments.program_dir, arguments.out, arguments.overrides};

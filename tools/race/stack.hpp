@@ -64,6 +64,14 @@ class InProcessStack final : public Stack {
   int64_t starts_ = 0;
 };
 
+/// Daemons that somebody else has started and looks after: systemd on the car, or in a container.
+class AttachedStack final : public Stack {
+ public:
+  /// Throws std::logic_error: they are not ours to switch.
+  void SetDaemon(const std::string& name, bool on) override;
+  void Tend(int64_t) override {}
+};
+
 /// Every daemon a process of its own, as on the car. A daemon that dies unasked is started again
 /// after 100 ms, five times in ten seconds at most, as its systemd unit would. All are ended with
 /// this object.

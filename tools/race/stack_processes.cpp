@@ -47,6 +47,10 @@ std::string Tail(const std::string& file) {
 
 }  // namespace
 
+void AttachedStack::SetDaemon(const std::string& name, bool) {
+  throw std::logic_error(name + " was started by another");
+}
+
 ProcessStack::ProcessStack(const StackOptions& options, const std::string& lcm_url)
     : options_(options), lcm_url_(lcm_url) {
   for (const std::string& name : DaemonsOf(options)) Start(name, processes_[name]);

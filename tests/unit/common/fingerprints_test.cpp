@@ -43,7 +43,7 @@ const std::map<std::string, uint64_t> kPinned{
     {"truth_track_t", 0x78473a999abfb991u},    {"vehicle_t", 0x4a10b5ce8d4ee6b8u},
     {"cone_cluster_t", 0x184e7bec69fd5cd0u},   {"cone_clusters_t", 0x519f077439ef7890u},
     {"global_cone_t", 0x62c355997fc0bcc1u},    {"global_map_t", 0x6b59960d97217597u},
-    {"lidar_scan_t", 0xa8c7d6d8db5b5747u},     {"race_line_point_t", 0x7ad0da9c37111ec2u},
+    {"lidar_scan_t", 0xf35992f7689b9cd4u},     {"race_line_point_t", 0x7ad0da9c37111ec2u},
     {"race_line_t", 0x5afbdee1a138dc37u},      {"velocity_t", 0x7a904c2206ae3cb8u},
     {"view_sector_t", 0x4e3168e5e1b7cf57u},
 };

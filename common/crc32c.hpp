@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace hairpin {
+
+/// CRC-32C of `size` bytes (Castagnoli polynomial, reflected, initial value and final xor all ones)
+/// [RFC 3720, 12.1]. Eight bytes a step by tables [Kounavis and Berry 2005, "slicing-by-8"].
+uint32_t Crc32c(const uint8_t* data, size_t size);
+
+}  // namespace hairpin
