@@ -2,6 +2,8 @@
 // at. Ticks are 10 ms of car time.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/gateway_rig.hpp"
 
 namespace hairpin {
@@ -97,7 +99,7 @@ TEST_P(Row30, OneBadFrameIsRefusedThreePeriodsEndTheHeartbeat) {
   GatewayRig rig;
   rig.Drive();
   rig.res_talks = false;
-  const auto send_bad = [&] { rig.Send(spoil(rig.NextRes())); };
+  const auto send_bad = [&] { rig.Send(spoil(rig.NextRes(rig.now))); };
   rig.Run(5);
   send_bad();
   EXPECT_TRUE(rig.heartbeat) << "held";
