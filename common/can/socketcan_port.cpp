@@ -21,6 +21,7 @@ namespace {
 static_assert(CanFrame::kExtended == CAN_EFF_FLAG && CanFrame::kRemote == CAN_RTR_FLAG &&
               CanFrame::kError == CAN_ERR_FLAG);
 
+constexpr size_t kBatch = 32;  // frames read or sent with one call
 constexpr int kReceiveBuffer = 1 << 20;
 // The kernel doubles it and counts about 750 bytes a frame: a cycle of commands and the data
 // logger's frames.
@@ -44,7 +45,7 @@ struct Ancillary {
   std::optional<uint32_t> drops;
 };
 
-Ancillary ReadAncillary(msghdr& message) {
+Ancillary ReadAncillary(msghdr& message, int64_t realtime_micros) {
   Ancillary result;
   for (cmsghdr* part = CMSG_FIRSTHDR(&message); part != nullptr;
        part = CMSG_NXTHDR(&message, part)) {
@@ -53,7 +54,7 @@ Ancillary ReadAncillary(msghdr& message) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
       const int64_t micros = int64_t{stamp.tv_sec} * 1'000'000 + stamp.tv_nsec / 1'000;
-      const int64_t age = RealtimeMicros() - micros;
+      const int64_t age = realtime_micros - micros;
       result.age_micros = age >= 0 && age < kMaxQueueTime ? age : 0;
     } else if (part->cmsg_type == SO_RXQ_OVFL) {
       uint32_t drops = 0;
@@ -134,39 +135,56 @@ void SocketCanPort::Reopen() {
 }
 
 std::optional<ReceivedFrame> SocketCanPort::Receive() {
-  if (state_ == CanState::kDown) Reopen();
-  while (socket_ >= 0) {
-    can_frame raw{};
-    iovec part{&raw, sizeof raw};
-    alignas(cmsghdr) std::array<char, 256> control{};
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control.data();
-    message.msg_controllen = control.size();
-    const ssize_t size = recvmsg(socket_, &message, 0);
-    if (size < 0) {
-      OnReadError(errno);
-      return std::nullopt;
-    }
-    const Ancillary ancillary = ReadAncillary(message);
+  if (waiting_.empty() && state_ == CanState::kDown) Reopen();
+  while (waiting_.empty()) {
+    if (!ReadBatch()) return std::nullopt;
+  }
+  const ReceivedFrame frame = waiting_.front();
+  waiting_.pop_front();
+  ++counts_.received;
+  return frame;
+}
+
+// Takes what the kernel has, up to kBatch frames in one call; false where it has none.
+bool SocketCanPort::ReadBatch() {
+  if (socket_ < 0) return false;
+  struct Slot {
+    can_frame raw;
+    iovec part;
+    alignas(cmsghdr) std::array<char, 128> control;
+  };
+  std::array<Slot, kBatch> slots{};
+  std::array<mmsghdr, kBatch> messages{};
+  for (size_t i = 0; i < kBatch; ++i) {
+    slots[i].part = {&slots[i].raw, sizeof(can_frame)};
+    messages[i].msg_hdr.msg_iov = &slots[i].part;
+    messages[i].msg_hdr.msg_iovlen = 1;
+    messages[i].msg_hdr.msg_control = slots[i].control.data();
+    messages[i].msg_hdr.msg_controllen = slots[i].control.size();
+  }
+  const int count = recvmmsg(socket_, messages.data(), kBatch, 0, nullptr);
+  if (count <= 0) {
+    OnReadError(errno);
+    return false;
+  }
+  const int64_t realtime = RealtimeMicros();
+  const int64_t now = clock_.NowMicros();
+  for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
+    const Ancillary ancillary = ReadAncillary(messages[i].msg_hdr, realtime);
     if (ancillary.drops) {
       counts_.overflowed += *ancillary.drops - kernel_drops_;
       kernel_drops_ = *ancillary.drops;
     }
-    if (size != sizeof raw) {
+    const CanFrame frame = ToFrame(slots[i].raw);
+    if (messages[i].msg_len != sizeof(can_frame)) {
       ++counts_.malformed;
-      continue;
-    }
-    const CanFrame frame = ToFrame(raw);
-    if ((frame.id & CanFrame::kError) != 0) {
+    } else if ((frame.id & CanFrame::kError) != 0) {
       OnErrorFrame(frame);
-      continue;
+    } else {
+      waiting_.push_back({frame, now - ancillary.age_micros});
     }
-    ++counts_.received;
-    return ReceivedFrame{frame, clock_.NowMicros() - ancillary.age_micros};
   }
-  return std::nullopt;
+  return true;
 }
 
 void SocketCanPort::OnReadError(int error) {
@@ -186,17 +204,32 @@ void SocketCanPort::OnErrorFrame(const CanFrame& frame) {
 }
 
 void SocketCanPort::Send(std::span<const CanFrame> frames) {
-  for (const CanFrame& frame : frames) {
-    can_frame raw{};
-    raw.can_id = frame.id;
-    raw.len = frame.length;
-    std::copy_n(frame.data.begin(), frame.length, raw.data);
-    const bool sent = state_ == CanState::kActive && write(socket_, &raw, sizeof raw) == sizeof raw;
-    if (!sent && state_ == CanState::kActive &&
-        (errno == ENETDOWN || errno == ENODEV || errno == ENXIO))
-      state_ = CanState::kDown;
-    ++(sent ? counts_.sent : counts_.unsent);
+  while (!frames.empty()) {
+    const auto part = frames.first(std::min(frames.size(), kBatch));
+    frames = frames.subspan(part.size());
+    const size_t sent = state_ == CanState::kActive ? SendBatch(part) : 0;
+    counts_.sent += static_cast<int64_t>(sent);
+    counts_.unsent += static_cast<int64_t>(part.size() - sent);
   }
+}
+
+// How many of at most kBatch frames the kernel took.
+size_t SocketCanPort::SendBatch(std::span<const CanFrame> frames) {
+  std::array<can_frame, kBatch> raw{};
+  std::array<iovec, kBatch> parts{};
+  std::array<mmsghdr, kBatch> messages{};
+  for (size_t i = 0; i < frames.size(); ++i) {
+    raw[i].can_id = frames[i].id;
+    raw[i].len = frames[i].length;
+    std::copy_n(frames[i].data.begin(), frames[i].length, raw[i].data);
+    parts[i] = {&raw[i], sizeof(can_frame)};
+    messages[i].msg_hdr.msg_iov = &parts[i];
+    messages[i].msg_hdr.msg_iovlen = 1;
+  }
+  const int sent = sendmmsg(socket_, messages.data(), static_cast<unsigned>(frames.size()), 0);
+  if (sent >= 0) return static_cast<size_t>(sent);
+  if (errno == ENETDOWN || errno == ENODEV || errno == ENXIO) state_ = CanState::kDown;
+  return 0;
 }
 
 }  // namespace hairpin

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,8 @@ class SocketCanPort final : public CanPort {
   void Reopen();
   void OnReadError(int error);
   void OnErrorFrame(const CanFrame& frame);
+  bool ReadBatch();
+  size_t SendBatch(std::span<const CanFrame> frames);
 
   std::string interface_;
   std::vector<uint32_t> ids_;
@@ -44,6 +47,7 @@ class SocketCanPort final : public CanPort {
   CanState state_ = CanState::kActive;
   uint32_t kernel_drops_ = 0;  // as of the socket's own counter
   int64_t next_open_micros_ = 0;
+  std::deque<ReceivedFrame> waiting_;  // data frames of one batch
   CanPortCounts counts_;
 };
 
