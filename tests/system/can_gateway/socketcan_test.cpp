@@ -134,7 +134,10 @@ class SocketCan : public testing::Test {
     gateway_.OnBus(port_->state());
     port_->Send(gateway_.Due(clock_.NowMicros()));
     car_.Listen();
-    while (const auto frame = car_port_->Receive()) car_.Hear(frame->frame, strict_);
+    while (const auto frame = car_port_->Receive()) {
+      if (frame->frame.id == dbc::TorqueCommandFront::kId) torques_.push_back(frame->frame);
+      car_.Hear(frame->frame, strict_);
+    }
   }
   void Run(int ticks) {
     for (int i = 0; i < ticks; ++i) Tick();
@@ -165,6 +168,7 @@ class SocketCan : public testing::Test {
   int64_t now_ = kStart;
   int64_t sent_ = 0;
   int ticks_ = -1;
+  std::vector<CanFrame> torques_;  // all that came out
   int64_t imus_ = 0;
   int64_t motors_ = 0;
   int64_t vehicles_ = 0;
@@ -239,11 +243,13 @@ TEST_F(DISABLED_SocketCan, KeepsTheCarDrivingInAFloodOf5000FramesASecond) {
   const MonotonicClock wall;
   const int64_t start = wall.NowMicros();
   std::thread flooder([&] {
-    const RawSocket stranger("vcan0");
+    SocketCanPort stranger("vcan0", {0x7FF}, wall);
+    const std::vector<CanFrame> frames(100, CanFrame{0x600, 8, {}});
     while (!stop) {
-      for (int i = 0; i < 25; ++i, ++flood) stranger.Send(0x600);
-      const int64_t due = start + flood * 200 - wall.NowMicros();  // 5000 a second
-      if (due > 0) std::this_thread::sleep_for(std::chrono::microseconds(due));
+      stranger.Send(frames);
+      flood = stranger.counts().sent;
+      const int64_t due = start + (flood + stranger.counts().unsent) * 200 - wall.NowMicros();
+      if (due > 0) std::this_thread::sleep_for(std::chrono::microseconds(due));  // 5000 a second
     }
   });
   while (wall.NowMicros() - start < 2'000'000) {
@@ -254,7 +260,7 @@ TEST_F(DISABLED_SocketCan, KeepsTheCarDrivingInAFloodOf5000FramesASecond) {
   flooder.join();
   const double seconds = static_cast<double>(wall.NowMicros() - start) * 1e-6;
   std::cout << flood << " foreign frames in " << seconds << " s\n";
-  EXPECT_GT(flood, 5'000) << "a slow machine floods less";
+  EXPECT_GT(static_cast<double>(flood), 4'500.0 * seconds);
   EXPECT_EQ(port_->counts().received - before, sent_ - sent_before)
       << "the kernel keeps the flood out, and loses nothing";
   EXPECT_EQ(port_->counts().overflowed, 0);
@@ -285,13 +291,16 @@ TEST_F(DISABLED_SocketCan, BusOffWhileDrivingEndsTheHeartbeatAndNothingOldComesO
   EXPECT_EQ(Emergency(), "CAN bus-off");
   controller.Send(CAN_ERR_FLAG | CAN_ERR_RESTARTED);
   strict_ = false;  // the counters have jumped
-  Tick();
-  Tick();
-  EXPECT_EQ(port_->state(), CanState::kActive);
-  EXPECT_GT(car_.frames, 0);
-  EXPECT_EQ(car_.front.left_nm, 0.0) << "the first that comes out is neutral";
-  EXPECT_FALSE(car_.front.enable);
+  torques_.clear();
   Run(20);
+  EXPECT_EQ(port_->state(), CanState::kActive);
+  ASSERT_FALSE(torques_.empty());
+  for (const CanFrame& frame : torques_) {
+    dbc::TorqueCommandFront torque;
+    ASSERT_EQ(dbc::Unpack(frame, torque), "");
+    EXPECT_EQ(torque.left_nm, 0.0) << "from the first on";
+    EXPECT_FALSE(torque.enable);
+  }
   EXPECT_FALSE(car_.heartbeat);
 }
 
