@@ -113,6 +113,18 @@ void Bus::Refuse(const std::string& channel, const std::string& why) {
   Warn(*found->second, why);
 }
 
+channel_health_t& Bus::AddInput(const std::string& name) {
+  auto& slot = subscriptions_[name];
+  if (slot) throw std::logic_error(daemon_ + " has two inputs called " + name);
+  slot = std::make_unique<Subscription>();
+  slot->health.channel = name;
+  return slot->health;
+}
+
+void Bus::WarnOfInput(const std::string& name, const std::string& why) {
+  Warn(*subscriptions_.at(name), why);
+}
+
 void Bus::Warn(Subscription& subscription, const std::string& why) {
   const bool first = subscription.last_warning_utime == 0;
   if (!first && SecondsBetween(subscription.last_warning_utime, newest_utime_) < 1.0) return;

@@ -43,8 +43,16 @@ class Bus {
     Refuse(std::string(channel.name), why);
   }
 
-  /// Calls `listener(utime)` whenever a handled message has advanced the data time; after the
-  /// message's own handler.
+  /// An input that is no channel, such as a socket: its counters, the caller's to keep, are
+  /// reported in Health() beside the channels'. Throws std::logic_error for a name that is taken.
+  channel_health_t& AddInput(const std::string& name);
+  /// Says on stderr what was wrong on such an input, at most once a second of data time.
+  void WarnOfInput(const std::string& name, const std::string& why);
+  /// For a driver, whose measurements are the data: `utime` is when the newest was taken.
+  void AdvanceDataTime(int64_t utime);
+
+  /// Calls `listener(utime)` whenever a handled message, or the node, has advanced the data
+  /// time; after the message's own handler.
   void OnDataTime(std::function<void(int64_t)> listener) {
     data_time_listener_ = std::move(listener);
   }
@@ -82,7 +90,6 @@ class Bus {
   void CountUndecodable(Subscription& subscription, const std::string& why);
   void Refuse(const std::string& channel, const std::string& why);
   void Warn(Subscription& subscription, const std::string& why);
-  void AdvanceDataTime(int64_t utime);
 
   Transport& transport_;
   std::string daemon_;

@@ -1,5 +1,6 @@
 #include "common/wire_schema.hpp"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -12,6 +13,7 @@ namespace hairpin {
 namespace {
 
 constexpr int kMaxDepth = 16;
+constexpr size_t kMaxFields = 64;  // of one struct
 
 std::string WithoutComments(std::string_view text) {
   static const std::regex kComment(R"(//[^\n]*|/\*[\s\S]*?\*/)");
@@ -61,14 +63,21 @@ void WireSchema::Parse(std::string_view text) {
       if ((*line)[1].matched) continue;  // constants are not on the wire
       fields.push_back(ParseField((*line)[2], (*line)[3], fields));
     }
+    if (fields.size() > kMaxFields) {
+      throw std::invalid_argument("message " + (*match)[1].str() + " has more than " +
+                                  std::to_string(kMaxFields) + " fields");
+    }
     structs_[(*match)[1]] = std::move(fields);
   }
-  for (const auto& [name, fields] : structs_) {
-    for (const Field& field : fields) {
-      if (field.kind == Kind::kStruct && !structs_.contains(field.struct_name)) {
+  for (auto& [name, fields] : structs_) {
+    for (Field& field : fields) {
+      if (field.kind != Kind::kStruct) continue;
+      const auto members = structs_.find(field.struct_name);
+      if (members == structs_.end()) {
         throw std::invalid_argument("message " + name + ": field " + field.name +
                                     " has unknown type " + field.struct_name);
       }
+      field.members = &members->second;
     }
   }
 }
@@ -88,7 +97,7 @@ WireSchema::Field WireSchema::ParseField(const std::string& type, const std::str
   if (!std::regex_match(declarator, match, kDeclarator))
     throw std::invalid_argument("message field not understood: " + declarator);
   const auto primitive = kPrimitives.find(type);
-  Field field{match[1], Kind::kStruct, 0, type.substr(type.rfind('.') + 1), {}};
+  Field field{match[1], Kind::kStruct, 0, type.substr(type.rfind('.') + 1), nullptr, {}};
   if (primitive != kPrimitives.end()) std::tie(field.kind, field.size) = primitive->second;
 
   const std::string lengths = match[2];
@@ -101,10 +110,11 @@ WireSchema::Field WireSchema::ParseField(const std::string& type, const std::str
     }
     int index = -1;
     for (size_t i = 0; i < before.size(); ++i) {
-      if (before[i].name == word) index = static_cast<int>(i);
+      const bool counts = before[i].kind == Kind::kInteger && before[i].dimensions.empty();
+      if (before[i].name == word && counts) index = static_cast<int>(i);
     }
     if (index < 0)
-      throw std::invalid_argument("message field " + declarator + ": no field " + word +
+      throw std::invalid_argument("message field " + declarator + ": no integer " + word +
                                   " stands before it");
     field.dimensions.push_back({0, index});
   }
@@ -113,15 +123,15 @@ WireSchema::Field WireSchema::ParseField(const std::string& type, const std::str
 
 std::string WireSchema::Problem(const std::string& type, const uint8_t* data, size_t size) const {
   Cursor cursor{data, size};
-  std::string problem = CheckStruct(type, cursor, 0);
+  std::string problem = CheckStruct(structs_.at(type), cursor, 0);
   if (problem.empty() && cursor.left > 0) problem = std::to_string(cursor.left) + " trailing bytes";
   return problem;
 }
 
-std::string WireSchema::CheckStruct(const std::string& type, Cursor& cursor, int depth) const {
+std::string WireSchema::CheckStruct(const std::vector<Field>& fields, Cursor& cursor,
+                                    int depth) const {
   if (depth > kMaxDepth) return "nested too deeply";
-  const std::vector<Field>& fields = structs_.at(type);
-  std::vector<int64_t> values(fields.size(), 0);
+  std::array<int64_t, kMaxFields> values;  // set before they are read: lengths stand before arrays
   for (size_t i = 0; i < fields.size(); ++i) {
     const Field& field = fields[i];
     int64_t count = 1;
@@ -154,7 +164,7 @@ std::string WireSchema::CheckField(const Field& field, int64_t count, Cursor& cu
     for (size_t i = 0; i < elements; ++i) {
       std::string problem = field.kind == Kind::kString
                                 ? CheckString(cursor)
-                                : CheckStruct(field.struct_name, cursor, depth + 1);
+                                : CheckStruct(*field.members, cursor, depth + 1);
       if (!problem.empty()) return field.name + ": " + problem;
     }
     return {};

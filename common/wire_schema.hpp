@@ -17,6 +17,8 @@ class WireSchema {
   /// Reads any number of definitions (the text of .lcm files, one after another).
   /// Throws std::invalid_argument where a definition cannot be understood.
   explicit WireSchema(std::string_view definitions);
+  WireSchema(const WireSchema&) = delete;
+  WireSchema& operator=(const WireSchema&) = delete;
 
   /// The schema of all of hairpin's messages.
   static const WireSchema& Hairpin();
@@ -38,6 +40,7 @@ class WireSchema {
     Kind kind;
     size_t size;  // bytes of one element; 0 for strings and structs
     std::string struct_name;
+    const std::vector<Field>* members;  // of a struct: in structs_
     std::vector<Dimension> dimensions;
   };
   struct Cursor {
@@ -48,7 +51,7 @@ class WireSchema {
   void Parse(std::string_view text);
   Field ParseField(const std::string& type, const std::string& declarator,
                    const std::vector<Field>& before) const;
-  std::string CheckStruct(const std::string& type, Cursor& cursor, int depth) const;
+  std::string CheckStruct(const std::vector<Field>& fields, Cursor& cursor, int depth) const;
   std::string CheckField(const Field& field, int64_t count, Cursor& cursor, int depth) const;
   std::string CheckString(Cursor& cursor) const;
 

@@ -124,12 +124,17 @@ Fallback BoundaryEstimator::FallbackOf(const Scene& scene, const Stretch& stretc
   return inferred ? Fallback::kOneSided : Fallback::kNone;
 }
 
+// A path through slivers of triangles is no measure of a track.
+void BoundaryEstimator::LearnWidth(const Stretch& stretch) {
+  const double width = stretch.MeanWidth().value_or(0.0);
+  if (width >= params_.search.min_width && width <= params_.search.max_width) width_seen_ = width;
+}
+
 TrackEstimate BoundaryEstimator::Estimate(const Pose2& T_local_base,
                                           const std::vector<MapCone>& cones) {
   const Scene scene = Select(T_local_base.Inverse(), cones);
   const PathSearchResult found = search_.Search(scene, Triangulate(scene.positions));
-  if (found.winner)
-    width_seen_ = ToStretch(scene, found.winner->edges).MeanWidth().value_or(width_seen_);
+  if (found.winner) LearnWidth(ToStretch(scene, found.winner->edges));
   const std::vector<Hypothesis> one_sided = OneSided(scene);
 
   TrackEstimate estimate;

@@ -80,6 +80,7 @@ class BoundaryEstimator {
   std::vector<Hypothesis> OneSided(const Scene& scene) const;
   bool Beats(const Scene& scene, const Hypothesis& one_sided, const Hypothesis& searched) const;
   Fallback FallbackOf(const Scene& scene, const Stretch& stretch) const;
+  void LearnWidth(const Stretch& stretch);
 
   BoundaryEstimatorParams params_;
   PathSearch search_;

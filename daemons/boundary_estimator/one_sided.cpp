@@ -137,8 +137,10 @@ Eigen::Vector2d EndDirection(const Scene& scene, const std::vector<int>& cones,
                                           : Eigen::Vector2d(step.normalized());
 }
 
-double LengthOf(const Scene& scene, const std::vector<int>& chain) {
-  double length = 0.0;
+// How far a side's cones lead past the end of the stretch: to its last cone, and along the chain.
+double LeadOf(const Scene& scene, const std::vector<int>& chain, const Stretch& stretch) {
+  const Eigen::Vector2d step = scene.positions[Index(chain.front())] - stretch.end();
+  double length = step.dot(stretch.end_direction());
   for (size_t i = 1; i < chain.size(); ++i) {
     length += (scene.positions[Index(chain[i])] - scene.positions[Index(chain[i - 1])]).norm();
   }
@@ -186,23 +188,22 @@ void ContinueOnOneSide(const Scene& scene, double width, const OneSidedParams& p
   }
   Side best_side = Side::kLeft;
   std::vector<int> best;
+  Eigen::Vector2d best_arriving = stretch.end_direction();
   double farthest = 0.0;
   for (const Side side : {Side::kLeft, Side::kRight}) {
     const std::vector<int> cones = ConesOf(stretch, side);
     if (cones.empty()) continue;
-    std::vector<int> chain = Follow(scene, side, cones.back(),
-                                    EndDirection(scene, cones, stretch, params), taken, params);
+    const Eigen::Vector2d arriving = EndDirection(scene, cones, stretch, params);
+    std::vector<int> chain = Follow(scene, side, cones.back(), arriving, taken, params);
     chain.insert(chain.begin(), cones.back());
-    const double length = LengthOf(scene, chain);
-    if (length <= farthest) continue;
-    farthest = length;
+    const double lead = LeadOf(scene, chain, stretch);
+    if (lead <= farthest) continue;
+    farthest = lead;
     best_side = side;
     best = chain;
+    best_arriving = arriving;
   }
-  if (best.empty()) return;
-  const Eigen::Vector2d step = scene.positions[Index(best[1])] - scene.positions[Index(best[0])];
-  best.erase(best.begin());
-  AppendChain(scene, best_side, best, step.normalized(), width, params, stretch);
+  AppendChain(scene, best_side, best, best_arriving, width, params, stretch);
 }
 
 void FillJump(const Stretch& one_sided, const OneSidedParams& params, Stretch& stretch) {

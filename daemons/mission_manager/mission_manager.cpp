@@ -92,7 +92,7 @@ std::string MissionManager::SystemProblem(int64_t now) const {
     if (!same) return daemon + " is of another build";
   }
   for (const NeededChannel& channel : params_.needed_channels) {
-    const std::string problem = monitors_.at(channel.name).Problem(now);
+    std::string problem = monitors_.at(channel.name).Problem(now);
     if (!problem.empty()) return problem;
   }
   if (!supervision_) return "the watchdog was never heard";

@@ -16,11 +16,9 @@ int Rank(MapMode mode) {
     case MapMode::kLidarAndCamera:
       return 2;
     case MapMode::kLidarOnly:
-      return 1;
     case MapMode::kCameraOnly:
       return 1;
     case MapMode::kNone:
-      break;
     case MapMode::kUnknown:
       break;
   }

@@ -59,6 +59,7 @@ nlohmann::json ToJson(const PlannerReport& report) {
   constexpr double kFull = PlannerReport::kFullLength - kTolerance;
   const auto& frames = report.frames;
   std::vector<double> times;
+  times.reserve(frames.size());
   for (const PlannerFrame& frame : frames) times.push_back(frame.time_ms);
   const auto percent = [&](auto predicate) { return Percent(frames, predicate); };
   using Frame = const PlannerFrame&;

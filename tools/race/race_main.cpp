@@ -79,7 +79,7 @@ void Define(CLI::App& app, Arguments& arguments) {
 
 std::string TrackFile(const Arguments& arguments) {
   if (std::filesystem::exists(arguments.track)) return arguments.track;
-  const std::string named = arguments.config_dir + "/tracks/" + arguments.track + ".yaml";
+  std::string named = arguments.config_dir + "/tracks/" + arguments.track + ".yaml";
   if (std::filesystem::exists(named)) return named;
   throw TrackError(arguments.track + ": no such file, nor " + named);
 }

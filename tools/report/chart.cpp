@@ -72,6 +72,7 @@ void Chart::LabelBelow(double x, std::string_view text) {
 
 void Chart::Line(const std::vector<Eigen::Vector2d>& values, std::string_view look) {
   std::vector<Eigen::Vector2d> points;
+  points.reserve(values.size());
   for (const Eigen::Vector2d& value : values) points.push_back(At(value.x(), value.y()));
   svg_.Polyline(points, look);
 }

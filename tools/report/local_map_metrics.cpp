@@ -97,6 +97,7 @@ std::vector<double> FalsePositiveLifetimes(const RunLog& log) {
     lifetimes[{local_map.epoch, cone.id}] += held;
   });
   std::vector<double> list;
+  list.reserve(lifetimes.size());
   for (const auto& [id, lifetime] : lifetimes) list.push_back(lifetime);
   return list;
 }

@@ -38,6 +38,7 @@ Eigen::Vector2d View::operator()(const Eigen::Vector2d& map) const {
 
 std::vector<Eigen::Vector2d> View::operator()(const std::vector<Eigen::Vector2d>& map) const {
   std::vector<Eigen::Vector2d> picture;
+  picture.reserve(map.size());
   for (const Eigen::Vector2d& point : map) picture.push_back((*this)(point));
   return picture;
 }

@@ -27,7 +27,7 @@ Actuators::Actuators(const ActuatorParams& params, const Car& car) : params_(par
 }
 
 std::string Actuators::OnCommand(const drive_command_t& command, int64_t now) {
-  const std::string problem = TimeProblem(command.utime, command_utime_, now);
+  std::string problem = TimeProblem(command.utime, command_utime_, now);
   if (!problem.empty()) return problem;
   const auto* torque = command.wheel_torque_nm;
   if (!std::isfinite(command.steering_angle_rad) || !std::isfinite(command.brake) ||
@@ -46,7 +46,7 @@ std::string Actuators::OnCommand(const drive_command_t& command, int64_t now) {
 
 std::string Actuators::OnState(const as_state_t& state, int64_t now) {
   // Sent again at a change: the same time may come twice.
-  const std::string problem = TimeProblem(state.utime, state_.utime - 1, now);
+  std::string problem = TimeProblem(state.utime, state_.utime - 1, now);
   if (!problem.empty()) return problem;
   const bool drove = state_.state == as_state_t::STATE_DRIVING;
   state_ = state;

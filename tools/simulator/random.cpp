@@ -23,6 +23,8 @@ uint64_t MixedSeed(uint64_t seed, std::string_view name) {
 
 RandomStream::RandomStream(uint64_t seed, std::string_view name) : engine_(MixedSeed(seed, name)) {}
 
+RandomStream::RandomStream(uint64_t seed) : engine_(seed) {}
+
 double RandomStream::Uniform() {
   return static_cast<double>(engine_() >> 11) * 0x1.0p-53;  // 53 bits: every double there is exact
 }

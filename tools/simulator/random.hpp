@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <random>
@@ -13,11 +14,15 @@ namespace hairpin {
 class RandomStream {
  public:
   RandomStream(uint64_t seed, std::string_view name);
+  /// The one without a name.
+  explicit RandomStream(uint64_t seed);
 
   /// Uniform in [0, 1).
   double Uniform();
   /// Uniform in [min, max).
   double Uniform(double min, double max) { return min + (max - min) * Uniform(); }
+  /// In 0 .. count - 1; count > 0.
+  size_t Index(size_t count) { return static_cast<size_t>(Uniform() * static_cast<double>(count)); }
   /// Normal with mean 0; draws also where sigma is 0.
   double Gaussian(double sigma);
   /// True with `probability`.

@@ -43,7 +43,7 @@ void CheckOptions(const GeneratorOptions& options) {
   }
 }
 
-TrackOutline OutlineFor(double length, TrackRandom& random) {
+TrackOutline OutlineFor(double length, RandomStream& random) {
   constexpr double kClearance = 8.5;   // m between centre lines of neighbouring stretches
   constexpr double kShortening = 0.9;  // of a boundary by shifting and rounding its corners
   OutlineParams params;
@@ -63,7 +63,7 @@ TrackOutline OutlineFor(double length, TrackRandom& random) {
 
 /// A radius for each corner, such that an edge's two arcs take half of it each, and the start edge
 /// keeps its straight. Empty where a corner is too tight.
-std::optional<std::vector<double>> RandomRadii(const TrackOutline& outline, TrackRandom& random) {
+std::optional<std::vector<double>> RandomRadii(const TrackOutline& outline, RandomStream& random) {
   const size_t n = outline.corners.size();
   const auto share = [&](size_t edge) {
     return 0.5 * (EdgeLength(outline, edge) - (edge == outline.start_edge ? kStartStraight : 0.0));
@@ -80,7 +80,7 @@ std::optional<std::vector<double>> RandomRadii(const TrackOutline& outline, Trac
 }
 
 /// A centre line of exactly `length`, by scaling one of about that.
-std::optional<RoundedLine> RandomLine(double length, TrackRandom& random) {
+std::optional<RoundedLine> RandomLine(double length, RandomStream& random) {
   constexpr double kMaxScaling = 1.2;
   TrackOutline outline = OutlineFor(length, random);
   auto radii = RandomRadii(outline, random);
@@ -146,7 +146,7 @@ std::vector<TrackCone> SideOf(const Layout& layout, double offset, ConeColour co
   return side;
 }
 
-Track TrackAlong(const RoundedLine& line, TrackRandom& random) {
+Track TrackAlong(const RoundedLine& line, RandomStream& random) {
   Layout layout{line, 0.0, random.Uniform(kMinTrackWidth, kMaxTrackWidth), {}};
   const double room = std::max(0.0, line.start_straight() - kStartStraight);
   layout.gate = kBehindStart + kStartToLine + random.Uniform(0.0, room);
@@ -161,7 +161,7 @@ Track TrackAlong(const RoundedLine& line, TrackRandom& random) {
 }
 
 /// Things 1.5 to 6 m beside the track, not nearer than 1 m to one another.
-void ScatterClutter(Track& track, int count, TrackRandom& random) {
+void ScatterClutter(Track& track, int count, RandomStream& random) {
   constexpr double kNearest = 1.5;
   constexpr double kFarthest = 6.0;
   constexpr double kApart = 1.0;
@@ -189,7 +189,7 @@ void ScatterClutter(Track& track, int count, TrackRandom& random) {
 
 Track GenerateTrack(const GeneratorOptions& options) {
   CheckOptions(options);
-  TrackRandom random(options.seed);
+  RandomStream random(options.seed);
   const double length = options.length.value_or(random.Uniform(240.0, 440.0));
   for (int tries = 0; tries < kMaxTries; ++tries) {
     const auto line = RandomLine(length, random);

@@ -34,7 +34,7 @@ int SharedEdges(const std::set<Cell>& cells, const Cell& cell) {
 
 /// Grows from one cell until the boundary has the edges wanted. Cells that share one edge lengthen
 /// it by two.
-std::set<Cell> GrowCells(size_t edges, TrackRandom& random) {
+std::set<Cell> GrowCells(size_t edges, RandomStream& random) {
   constexpr size_t kFirst = 4;
   std::set<Cell> cells{{0, 0}};
   for (size_t boundary = kFirst; boundary < edges; boundary += 2) {
@@ -99,7 +99,7 @@ int BendBefore(const std::vector<std::vector<Cell>>& straights, size_t i) {
 
 /// Positions of the grid's lines `from` to `to`, with random distances between.
 std::map<int, double> GridLines(int from, int to, const OutlineParams& params,
-                                TrackRandom& random) {
+                                RandomStream& random) {
   std::map<int, double> lines;
   double at = 0.0;
   for (int i = from; i <= to; ++i) {
@@ -111,7 +111,8 @@ std::map<int, double> GridLines(int from, int to, const OutlineParams& params,
 
 class OutlineBuilder {
  public:
-  OutlineBuilder(const std::vector<Cell>& corners, const OutlineParams& params, TrackRandom& random)
+  OutlineBuilder(const std::vector<Cell>& corners, const OutlineParams& params,
+                 RandomStream& random)
       : params_(params), random_(random) {
     const auto [left, right] = std::minmax_element(corners.begin(), corners.end());
     const auto [low, high] =
@@ -131,7 +132,7 @@ class OutlineBuilder {
 
  private:
   const OutlineParams& params_;
-  TrackRandom& random_;
+  RandomStream& random_;
   std::map<int, double> columns_;
   std::map<int, double> rows_;
   TrackOutline outline_;
@@ -139,7 +140,7 @@ class OutlineBuilder {
 
 }  // namespace
 
-TrackOutline RandomOutline(const OutlineParams& params, TrackRandom& random) {
+TrackOutline RandomOutline(const OutlineParams& params, RandomStream& random) {
   const std::vector<Cell> corners = Boundary(GrowCells(params.edges, random));
   const auto straights = Straights(corners);
   const auto longest =

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "tools/simulator/random.hpp"
 #include "tools/simulator/track_geometry.hpp"
-#include "tools/simulator/track_random.hpp"
 
 namespace hairpin {
 
@@ -27,6 +27,6 @@ struct OutlineParams {
 
 /// The boundary of a random clump of cells of an uneven grid, without holes. Its longest straight
 /// is the start edge.
-TrackOutline RandomOutline(const OutlineParams& params, TrackRandom& random);
+TrackOutline RandomOutline(const OutlineParams& params, RandomStream& random);
 
 }  // namespace hairpin

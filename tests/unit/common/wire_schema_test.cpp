@@ -179,6 +179,10 @@ TEST(WireSchema, RefusesTheProductOfLengthsThatFitOneByOne) {
 TEST(WireSchema, RefusesDefinitionsThatItCannotUnderstand) {
   EXPECT_THROW(WireSchema("struct a_t { missing_t x; }"), std::invalid_argument);
   EXPECT_THROW(WireSchema("struct a_t { double x[n]; int32_t n; }"), std::invalid_argument);
+  EXPECT_THROW(WireSchema("struct a_t { double n; double x[n]; }"), std::invalid_argument);
+  std::string fields;
+  for (int i = 0; i < 65; ++i) fields += "double x" + std::to_string(i) + "; ";
+  EXPECT_THROW(WireSchema("struct a_t { " + fields + "}"), std::invalid_argument);
   EXPECT_THROW(WireSchema::Hairpin().Problem("no_such_t", nullptr, 0), std::out_of_range);
 }
 

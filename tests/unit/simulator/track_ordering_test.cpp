@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "tools/simulator/random.hpp"
 #include "tools/simulator/track_generator.hpp"
 #include "tools/simulator/track_geometry.hpp"
-#include "tools/simulator/track_random.hpp"
 
 namespace hairpin {
 namespace {
@@ -18,7 +18,7 @@ TEST(TrackOrdering, FindsTheOrderOfShuffledSidesOfRandomTracks) {
     const Polyline side = PositionsOf(GenerateTrack({seed, std::nullopt, 0}).left);
     std::vector<size_t> shuffled(side.size());
     std::iota(shuffled.begin(), shuffled.end(), size_t{0});
-    TrackRandom random(seed);
+    RandomStream random(seed);
     for (size_t i = shuffled.size() - 1; i > 0; --i)
       std::swap(shuffled[i], shuffled[random.Index(i + 1)]);
     Polyline points;
