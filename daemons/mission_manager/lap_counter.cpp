@@ -20,6 +20,7 @@ void Check(const LapCounterParams& params) {
   require(params.gate_memory > 0.0, "gate_memory_m must be > 0");
   require(params.blind_tolerance > 0.0, "blind_tolerance_m must be > 0");
   require(params.blind_overrun >= 0.0, "blind_overrun_m must be >= 0");
+  require(params.localised_overrun >= 0.0, "localised_overrun_m must be >= 0");
   require(params.max_heading_error > 0.0 && params.max_heading_error < std::numbers::pi / 2.0,
           "max_heading_error_rad must be from 0 to pi / 2");
 }
@@ -43,7 +44,7 @@ void LapCounter::Observe(const std::vector<GateCone>& cones_own, const Pose2& T_
   gate_distance_ = distance;
 }
 
-void LapCounter::Move(const Pose2& T_own_base, double distance) {
+void LapCounter::Move(const Pose2& T_own_base, double distance, bool localised) {
   if (gate_ && distance - gate_distance_ > params_.gate_memory) {
     gate_.reset();
     gate_watch_.Forget();
@@ -54,18 +55,19 @@ void LapCounter::Move(const Pose2& T_own_base, double distance) {
     const double tolerance = gate_->half_width + params_.gate_margin;
     if (gate_watch_.Crosses(*gate_, T_own_base, tolerance)) Cross(*gate_, distance);
   } else {
-    MoveBlind(T_own_base, distance);
+    MoveBlind(T_own_base, distance, localised);
   }
   // The line was behind the car, or never seen: the lap is on all the same.
   if (!started_ && distance >= params_.start_within) Cross(gate_ ? *gate_ : reference_, distance);
 }
 
-void LapCounter::MoveBlind(const Pose2& T_own_base, double distance) {
+void LapCounter::MoveBlind(const Pose2& T_own_base, double distance, bool localised) {
   if (started_ && distance - crossed_distance_ < params_.min_lap_length) return;
   if (reference_watch_.Crosses(reference_, T_own_base, params_.blind_tolerance)) {
     blind_crossing_ = distance;
   }
-  const double overrun = started_ ? params_.blind_overrun : 0.0;
+  const double needed = localised ? params_.localised_overrun : params_.blind_overrun;
+  const double overrun = started_ ? needed : 0.0;
   if (blind_crossing_ && distance - *blind_crossing_ >= overrun) Cross(reference_, distance);
 }
 

@@ -16,6 +16,7 @@ struct LapCounterParams {
   double gate_memory = 0.0;        // a gate not seen again is forgotten after this way [m], > 0
   double blind_tolerance = 0.0;    // beside the line found by dead reckoning [m], > 0
   double blind_overrun = 0.0;      // and so far on before the lap counts [m], >= 0
+  double localised_overrun = 0.0;  // the same where the pose does not drift [m], >= 0
   double max_heading_error = 0.0;  // between car and line's direction [rad], 0 to pi / 2
 };
 
@@ -36,8 +37,8 @@ class LapCounter {
   /// Large orange cones as seen when the car was at `T_own_base`, `distance` [m] driven; positions
   /// in the same frame.
   void Observe(const std::vector<GateCone>& cones_own, const Pose2& T_own_base, double distance);
-  /// The car is at `T_own_base` now, `distance` [m] driven.
-  void Move(const Pose2& T_own_base, double distance);
+  /// The car is at `T_own_base` now, `distance` [m] driven; `localised`: in a map, without drift.
+  void Move(const Pose2& T_own_base, double distance, bool localised = false);
 
   bool started() const { return started_; }
   int laps() const { return laps_; }
@@ -46,7 +47,7 @@ class LapCounter {
 
  private:
   void Cross(const StartLine& line, double distance);
-  void MoveBlind(const Pose2& T_own_base, double distance);
+  void MoveBlind(const Pose2& T_own_base, double distance, bool localised);
 
   LapCounterParams params_;
   std::optional<StartLine> gate_;

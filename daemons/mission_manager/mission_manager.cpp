@@ -1,9 +1,11 @@
 #include "daemons/mission_manager/mission_manager.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "common/clock.hpp"
+#include "hairpin/global_map_t.hpp"
 #include "hairpin/vehicle_t.hpp"
 
 namespace hairpin {
@@ -16,6 +18,8 @@ void Check(const MissionManagerParams& params) {
     if (!holds) throw std::invalid_argument(std::string("MissionManager: ") + what);
   };
   require(params.autocross_laps >= 1, "autocross_laps must be >= 1");
+  require(params.trackdrive_laps >= 1, "trackdrive_laps must be >= 1");
+  require(params.localisation_deadline > 0.0, "the deadline of GLOBAL_MAP must be > 0");
   require(params.standstill_speed > 0.0, "standstill_speed_mps must be > 0");
   require(params.standstill_time >= 0.0, "standstill_time_s must be >= 0");
 }
@@ -26,15 +30,13 @@ std::string MissionProblem(int32_t mission) {
   const char* name = nullptr;
   switch (mission) {
     case vehicle_t::MISSION_AUTOCROSS:
+    case vehicle_t::MISSION_TRACKDRIVE:
       return {};
     case vehicle_t::MISSION_ACCELERATION:
       name = "acceleration";
       break;
     case vehicle_t::MISSION_SKIDPAD:
       name = "skidpad";
-      break;
-    case vehicle_t::MISSION_TRACKDRIVE:
-      name = "trackdrive";
       break;
     case vehicle_t::MISSION_BRAKE_TEST:
       name = "brake test";
@@ -66,11 +68,26 @@ void MissionManager::TakeBuild(const std::string& daemon, const std::string& bui
   same_build_[daemon] = build == params_.build && types_hash == params_.types_hash;
 }
 
+void MissionManager::TakeLocalisation(const LocalisationInput& localisation) {
+  localisation_ = localisation;
+  if (localisation.phase != global_map_t::PHASE_LOCALISED) return;
+  const std::optional<Pose2> T_own_base = history_.At(localisation.utime);
+  if (T_own_base) T_map_own_ = localisation.T_map_base * T_own_base->Inverse();
+}
+
+// T_start_own: by the map where the car began localised in it, else by dead reckoning alone.
+Pose2 MissionManager::StartFromOwn() const {
+  if (drive_->T_map_start && T_map_own_) return drive_->T_map_start->Inverse() * *T_map_own_;
+  return drive_->T_own_start.Inverse();
+}
+
 bool MissionManager::TakeVelocity(int64_t utime, const Twist2& velocity) {
   if (!history_.Add(utime, velocity)) return false;
   if (drive_) {
-    const Pose2 T_start_base = drive_->T_own_start.Inverse() * *history_.At(utime);
-    drive_->laps.Move(T_start_base, history_.distance() - drive_->start_distance);
+    const Pose2 T_start_base = StartFromOwn() * *history_.At(utime);
+    const bool localised =
+        drive_->T_map_start && LocalisationProblem(std::max(utime, localisation_->now)).empty();
+    drive_->laps.Move(T_start_base, history_.distance() - drive_->start_distance, localised);
   }
   return true;
 }
@@ -80,7 +97,7 @@ bool MissionManager::TakeLocalMap(int64_t utime, const Pose2& T_local_base,
   const std::optional<Pose2> T_own_base = history_.At(utime);
   if (!T_own_base) return false;
   if (!drive_) return true;
-  const Pose2 T_start_base = drive_->T_own_start.Inverse() * *T_own_base;
+  const Pose2 T_start_base = StartFromOwn() * *T_own_base;
   const Pose2 T_start_local = T_start_base * T_local_base.Inverse();
   for (GateCone& cone : cones) cone.position = T_start_local * cone.position;
   drive_->laps.Observe(cones, T_start_base, history_.distance() - drive_->start_distance);
@@ -98,7 +115,23 @@ std::string MissionManager::SystemProblem(int64_t now) const {
   if (!supervision_) return "the watchdog was never heard";
   if (supervision_->blind) return "no perception pipeline is live: " + supervision_->reason;
   if (supervision_->stop) return "the watchdog asks for a stop: " + supervision_->reason;
+  if (mission_ == vehicle_t::MISSION_TRACKDRIVE) return LocalisationProblem(now);
   return {};
+}
+
+std::string MissionManager::LocalisationProblem(int64_t now) const {
+  if (!localisation_) return "trackdrive: GLOBAL_MAP was never heard";
+  if (SecondsBetween(localisation_->now, now) > params_.localisation_deadline) {
+    return "trackdrive: GLOBAL_MAP is stale";
+  }
+  switch (localisation_->phase) {
+    case global_map_t::PHASE_LOCALISED:
+      return {};
+    case global_map_t::PHASE_LOST:
+      return "trackdrive: the car does not find itself on the map";
+    default:
+      return "trackdrive: no map is loaded";
+  }
 }
 
 bool MissionManager::Stands(const VehicleInput& vehicle) {
@@ -108,13 +141,19 @@ bool MissionManager::Stands(const VehicleInput& vehicle) {
   return SecondsBetween(moved_utime_, vehicle.as.utime) >= params_.standstill_time;
 }
 
+int MissionManager::LapsToDrive() const {
+  return mission_ == vehicle_t::MISSION_TRACKDRIVE ? params_.trackdrive_laps
+                                                   : params_.autocross_laps;
+}
+
 bool MissionManager::MissionFinished() const {
-  return drive_ && drive_->laps.laps() >= params_.autocross_laps;
+  return drive_ && drive_->laps.laps() >= LapsToDrive();
 }
 
 std::optional<MissionReport> MissionManager::Update(const VehicleInput& vehicle, int64_t now) {
   if (vehicle.as.utime <= last_utime_) return std::nullopt;
   last_utime_ = vehicle.as.utime;
+  mission_ = vehicle.mission;
   AsInput input = vehicle.as;
   input.mission_problem = MissionProblem(vehicle.mission);
   input.system_problem = SystemProblem(now);
@@ -124,11 +163,14 @@ std::optional<MissionReport> MissionManager::Update(const VehicleInput& vehicle,
   const AsState state = machine_.Update(input);
   if (state == AsState::kDriving && before != AsState::kDriving) {
     const Pose2 T_own_start = history_.At(history_.newest_utime()).value_or(Pose2{});
-    drive_.emplace(Drive{T_own_start, history_.distance(), LapCounter(params_.laps)});
+    std::optional<Pose2> T_map_start;
+    if (mission_ == vehicle_t::MISSION_TRACKDRIVE && T_map_own_)
+      T_map_start = *T_map_own_ * T_own_start;
+    drive_.emplace(Drive{T_own_start, T_map_start, history_.distance(), LapCounter(params_.laps)});
   }
   MissionReport report;
   report.state = state;
-  report.laps_to_drive = input.mission_problem.empty() ? params_.autocross_laps : 0;
+  report.laps_to_drive = input.mission_problem.empty() ? LapsToDrive() : 0;
   report.laps = drive_ ? drive_->laps.laps() : 0;
   report.mission_finished = MissionFinished();
   report.distance = drive_ ? history_.distance() - drive_->start_distance : 0.0;
@@ -142,7 +184,7 @@ std::string MissionManager::Reason() const {
   }
   if (!drive_->laps.started()) return "driving to the start line";
   return "driving lap " + std::to_string(drive_->laps.laps() + 1) + " of " +
-         std::to_string(params_.autocross_laps);
+         std::to_string(LapsToDrive());
 }
 
 }  // namespace hairpin

@@ -25,12 +25,14 @@ struct MissionManagerParams {
   std::vector<NeededChannel> needed_channels;
   RateMonitorParams rate;
   LapCounterParams laps;
-  double go_delay = 0.0;          // [s], >= 0
-  int autocross_laps = 0;         // >= 1
-  double standstill_speed = 0.0;  // [m/s], > 0
-  double standstill_time = 0.0;   // slower than that for so long is standing [s], >= 0
-  double history = 0.0;           // of poses, longer than a local map is late [s], > 0
-  std::string build;              // of this daemon; one that differs in another refuses Ready
+  double go_delay = 0.0;               // [s], >= 0
+  int autocross_laps = 0;              // >= 1
+  int trackdrive_laps = 0;             // >= 1
+  double localisation_deadline = 0.0;  // of GLOBAL_MAP [s], > 0
+  double standstill_speed = 0.0;       // [m/s], > 0
+  double standstill_time = 0.0;        // slower than that for so long is standing [s], >= 0
+  double history = 0.0;                // of poses, longer than a local map is late [s], > 0
+  std::string build;                   // of this daemon; one that differs in another refuses Ready
   int64_t types_hash = 0;
 };
 
@@ -46,6 +48,14 @@ struct SupervisionInput {
   bool blind = false;  // no map mode
   bool stop = false;   // a controlled stop or more is asked for
   std::string reason;
+};
+
+/// Newest word of the global mapper.
+struct LocalisationInput {
+  int64_t utime = 0;  // of the pose
+  int64_t now = 0;    // data time when it was heard
+  int32_t phase = 0;  // as in global_map_t
+  Pose2 T_map_base;
 };
 
 /// State of the mission; fields as in as_state_t.
@@ -70,6 +80,8 @@ class MissionManager {
   /// among them.
   void Heard(const std::string& channel, int64_t now) { monitors_.at(channel).Heard(now); }
   void TakeSupervision(const SupervisionInput& supervision) { supervision_ = supervision; }
+  /// In a trackdrive the pose in a known map takes the drift out of dead reckoning.
+  void TakeLocalisation(const LocalisationInput& localisation);
   /// Which build another daemon runs.
   void TakeBuild(const std::string& daemon, const std::string& build, int64_t types_hash);
   /// Returns false, and ignores it, where the time does not increase.
@@ -85,12 +97,16 @@ class MissionManager {
   /// The drive that began with Driving.
   struct Drive {
     Pose2 T_own_start;
+    std::optional<Pose2> T_map_start;  // where the car is localised
     double start_distance;
     LapCounter laps;
   };
 
+  Pose2 StartFromOwn() const;
   std::string SystemProblem(int64_t now) const;
+  std::string LocalisationProblem(int64_t now) const;
   bool Stands(const VehicleInput& vehicle);
+  int LapsToDrive() const;
   bool MissionFinished() const;
   std::string Reason() const;
 
@@ -99,6 +115,9 @@ class MissionManager {
   PoseHistory history_;
   std::map<std::string, RateMonitor> monitors_;
   std::optional<SupervisionInput> supervision_;
+  std::optional<LocalisationInput> localisation_;
+  std::optional<Pose2> T_map_own_;          // by the newest pose in the known map
+  int32_t mission_ = 0;                     // as in vehicle_t
   std::map<std::string, bool> same_build_;  // by daemon
   std::optional<Drive> drive_;
   int64_t last_utime_ = 0;

@@ -61,6 +61,7 @@ LapCounterParams LoadLaps(const Config& config) {
   laps.gate_memory = config.Number("gate_memory_m", {0.1, 200.0});
   laps.blind_tolerance = config.Number("blind_tolerance_m", {0.1, 50.0});
   laps.blind_overrun = config.Number("blind_overrun_m", {0.0, 50.0});
+  laps.localised_overrun = config.Number("localised_overrun_m", {0.0, 50.0});
   laps.max_heading_error = config.Number("max_heading_error_rad", {0.01, 1.57});
   return laps;
 }
@@ -78,6 +79,8 @@ MissionManagerParams LoadMissionManagerParams(const Config& config) {
   params.rate.min_share = config.Number("min_rate_share", {0.0, 1.0});
   params.go_delay = config.Number("go_delay_s", {0.0, 60.0});
   params.autocross_laps = config.Integer("autocross_laps", 1, 100);
+  params.trackdrive_laps = config.Integer("trackdrive_laps", 1, 100);
+  params.localisation_deadline = channels::kGlobalMap.deadline_s;
   params.standstill_speed = config.Number("standstill_speed_mps", {0.01, 1.0});
   params.standstill_time = config.Number("standstill_time_s", {0.0, 10.0});
   params.history = config.Number("history_s", {0.3, 10.0});
@@ -95,6 +98,12 @@ MissionManagerNode::MissionManagerNode(const MissionManagerParams& params, Bus& 
                 [this](const pipeline_status_t& message) { OnPipelineStatus(message); });
   bus.Subscribe(channels::kHeartbeat, [this](const heartbeat_t& message) {
     manager_.TakeBuild(message.daemon, message.build, message.types_hash);
+  });
+  bus.Subscribe(channels::kGlobalMap, [this](const global_map_t& message) {
+    manager_.TakeLocalisation({message.utime,
+                               Now(message.utime),
+                               message.phase,
+                               {message.x_m, message.y_m, message.yaw_rad}});
   });
   bus.Subscribe(channels::kTrack, [this](const track_t& message) {
     manager_.Heard(channels::kTrack.name, Now(message.utime));

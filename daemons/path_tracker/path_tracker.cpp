@@ -34,6 +34,9 @@ void Check(const PathTrackerParams& params) {
   require(params.rates.brake > 0.0, "brake_rate_per_s must be > 0");
   require(params.reaction_time >= 0.0, "reaction_time_s must be >= 0");
   require(params.steering_delay >= 0.0, "steering_delay_s must be >= 0");
+  require(params.race_max_acceleration >= control.max_acceleration,
+          "race_max_acceleration_mps2 must be >= max_acceleration_mps2");
+  require(params.finish_distance > 0.0, "finish_distance_m must be > 0");
   Check(params.gate);
 }
 
@@ -56,11 +59,13 @@ PathTracker::PathTracker(const PathTrackerParams& params)
     : params_(params),
       steering_(params.steering, params.car),
       forces_(params.forces, params.car),
-      history_(params.gate.max_path_age + PoseHistory::kMaxExtrapolation) {
+      history_(params.gate.max_path_age + PoseHistory::kMaxExtrapolation),
+      race_(params.race) {
   Check(params);
   // Refuses wrong parameters of the parts that are made anew for each path.
   const ReferencePath path({{0.0, 0.0}, {1.0, 0.0}}, params.path);
   SpeedProfile(path.curvature(), path.spacing(), path.length(), params.speed);
+  SpeedProfile(path.curvature(), path.spacing(), path.length(), params.race.speed);
   last_.brake = params.control.hold_brake;
 }
 
@@ -86,10 +91,29 @@ std::string PathTracker::TakePath(const PathInput& input) {
     const double seen = SeenLength(path, input, T_own_local);
     SpeedProfile profile(path.curvature(), path.spacing(), seen, params_.speed);
     followed_.emplace(Followed{input.utime, std::move(path), std::move(profile), 0.0});
+    CompareRaceLine(input, T_own_local);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
   return {};
+}
+
+std::string PathTracker::TakeRaceLine(const RaceLineInput& line) {
+  const std::optional<Pose2> T_own_base = history_.At(line.utime);
+  const std::optional<Pose2> T_own_now = history_.At(history_.newest_utime());
+  if (!T_own_base || !T_own_now) return "its time is outside the pose history";
+  return race_.Take(line, *T_own_base, *T_own_now);
+}
+
+void PathTracker::CompareRaceLine(const PathInput& input, const Pose2& T_own_local) {
+  SeenTrack seen;
+  seen.utime = input.utime;
+  seen.path = &followed_->path;
+  for (size_t i = 0; i < std::min(input.num_seen, input.widths.size()); ++i) {
+    seen.points.push_back(T_own_local * input.points[i]);
+    seen.widths.push_back(input.widths[i]);
+  }
+  race_.Compare(seen);
 }
 
 double PathTracker::SeenLength(const ReferencePath& path, const PathInput& input,
@@ -106,6 +130,13 @@ double PathTracker::SeenLength(const ReferencePath& path, const PathInput& input
 bool PathTracker::TakeAsState(const AsStateInput& as_state) {
   if (as_state_ && as_state.utime < as_state_->utime) return false;
   as_state_ = as_state;
+  if (!as_state.mission_finished) finish_deceleration_.reset();
+  if (as_state.mission_finished && !finish_deceleration_) {
+    const double needed = 0.5 * twist_.vx * twist_.vx / params_.finish_distance;
+    finish_deceleration_ =
+        std::clamp(needed, params_.gate.finish_deceleration,
+                   std::max(params_.control.max_braking, params_.gate.finish_deceleration));
+  }
   return true;
 }
 
@@ -115,9 +146,20 @@ bool PathTracker::TakePipelineStatus(const PipelineStatusInput& status) {
   return true;
 }
 
-ReferencePath::Location PathTracker::Locate(const Pose2& T_own_base) const {
+ReferencePath::Location PathTracker::LocateOnPath(const Pose2& T_own_base) const {
   const double s = followed_->progress;
   return followed_->path.Locate(T_own_base.position(), s - kSearchBehind, s + kSearchAhead);
+}
+
+ReferencePath::Location PathTracker::Locate(const Pose2& T_own_base) const {
+  ReferencePath::Location location = LocateOnPath(T_own_base);
+  const double w = race_.weight();
+  if (w <= 0.0) return location;
+  const ReferencePath::Location race = race_.Locate(T_own_base.position());
+  location.lateral_error = std::lerp(location.lateral_error, race.lateral_error, w);
+  location.heading += w * WrapAngle(race.heading - location.heading);
+  location.curvature = std::lerp(location.curvature, race.curvature, w);
+  return location;
 }
 
 double PathTracker::Steer(const Pose2& T_own_base) const {
@@ -126,7 +168,7 @@ double PathTracker::Steer(const Pose2& T_own_base) const {
   return steering_.Angle(Locate(T_own_then), T_own_then.yaw, std::max(twist_.vx, 0.0));
 }
 
-SpeedProfile::Limit PathTracker::TargetSpeed(int64_t utime) const {
+SpeedProfile::Limit PathTracker::PathSpeed(int64_t utime) const {
   const double speed = std::max(twist_.vx, 0.0);
   const double s = followed_->progress;
   const double delay = params_.control.delay;
@@ -142,10 +184,23 @@ SpeedProfile::Limit PathTracker::TargetSpeed(int64_t utime) const {
   return target;
 }
 
+SpeedProfile::Limit PathTracker::RaceSpeed() const {
+  return race_.Speed(std::max(twist_.vx, 0.0) * params_.control.delay);
+}
+
+SpeedProfile::Limit PathTracker::TargetSpeed(int64_t utime) const {
+  if (race_.leads()) return RaceSpeed();
+  const SpeedProfile::Limit target = PathSpeed(utime);
+  if (race_.weight() <= 0.0) return target;
+  const SpeedProfile::Limit race = RaceSpeed();
+  return race.speed < target.speed ? race : target;
+}
+
 double PathTracker::Accelerate(const DriveDecision& decision,
                                const std::optional<SpeedProfile::Limit>& target) const {
   const SpeedControlParams& control = params_.control;
-  double acceleration = decision.may_accelerate ? control.max_acceleration : 0.0;
+  const double most = race_.leads() ? params_.race_max_acceleration : control.max_acceleration;
+  double acceleration = decision.may_accelerate ? most : 0.0;
   if (decision.action != DriveAction::kDrive) acceleration = -decision.deceleration;
   if (target) {
     const double tracking = target->acceleration + control.gain * (target->speed - twist_.vx);
@@ -190,10 +245,11 @@ std::optional<SpeedProfile::Limit> PathTracker::Follow(const DriveDecision& deci
                                                        TrackerCommand& command) {
   const std::optional<Pose2> T_own_base = history_.At(utime);
   if (!followed_ || !T_own_base) return std::nullopt;
-  const ReferencePath::Location location = Locate(*T_own_base);
-  followed_->progress = location.s;
-  command.path_utime = followed_->utime;
-  command.lateral_error = location.lateral_error;
+  followed_->progress = LocateOnPath(*T_own_base).s;
+  race_.Update(utime, *T_own_base, followed_->utime);
+  command.on_race_line = race_.leads();
+  command.path_utime = race_.leads() ? race_.line_utime() : followed_->utime;
+  command.lateral_error = Locate(*T_own_base).lateral_error;
   const bool drives = decision.action == DriveAction::kDrive;
   // Wheels are not turned where the car waits.
   if (drives || twist_.vx > params_.control.standstill_speed)
@@ -215,8 +271,10 @@ std::optional<TrackerCommand> PathTracker::Answer(int64_t utime,
   }
   const std::optional<int64_t> path_utime =
       followed_ ? std::optional(followed_->utime) : std::nullopt;
+  DriveGateParams gate = params_.gate;
+  gate.finish_deceleration = finish_deceleration_.value_or(gate.finish_deceleration);
   const DriveDecision decision =
-      Decide({utime, velocity.has_value(), as_state_, status_, path_utime}, params_.gate);
+      Decide({utime, velocity.has_value(), as_state_, status_, path_utime}, gate);
   TrackerCommand command;
   command.action = decision.action;
   command.steering_angle = last_.steering_angle;  // kept where there is nothing better

@@ -11,6 +11,7 @@
 #include "common/geometry.hpp"
 #include "common/pose_history.hpp"
 #include "daemons/path_tracker/drive_gate.hpp"
+#include "daemons/path_tracker/race_guide.hpp"
 #include "daemons/path_tracker/reference_path.hpp"
 #include "daemons/path_tracker/speed_profile.hpp"
 #include "daemons/path_tracker/steering.hpp"
@@ -46,6 +47,9 @@ struct PathTrackerParams {
   DriveGateParams gate;
   SpeedControlParams control;
   CommandRates rates;
+  RaceGuideParams race;
+  double race_max_acceleration = 0.0;  // on the race line [m/s2], >= control.max_acceleration
+  double finish_distance = 0.0;  // the car stands so far after the finish at the latest [m], > 0
   double reaction_time =
       0.0;  // t of v <= sqrt(2 a (L - v t)), from the path's own time on [s], >= 0
   double steering_delay = 0.0;  // from command to wheel angle [s], >= 0
@@ -58,11 +62,13 @@ struct PathInput {
   std::vector<Eigen::Vector2d> points;  // local [m], from the car outward
   size_t num_seen = 0;                  // so many points from the first on are supported by cones
   double seen_length = 0.0;             // from the car [m]
+  std::vector<double> widths;           // of the track, by point [m]
 };
 
 /// What the actuators are to do; fields as in drive_command_t.
 struct TrackerCommand {
   int64_t path_utime = 0;  // 0: none
+  bool on_race_line = false;
   DriveAction action = DriveAction::kHold;
   double steering_angle = 0.0;
   std::array<double, 4> wheel_torque{};
@@ -75,6 +81,10 @@ struct TrackerCommand {
 /// Steers the car along the middle path and chooses its speed. For each path: smooth curve and
 /// speed profile; for each velocity: dead reckoning, place on the path now and after the actuators'
 /// delay, command.
+///
+/// Where there is a race line and no doubt of it (RaceGuide), the car follows that one at the
+/// speeds planned for it, within the friction circle of the commands; the middle path stays at
+/// hand, and the car moves over to it at the first doubt.
 ///
 /// Speed obeys v <= sqrt(2 a (L - v t)) over the seen length L [FAULTS 36]. The reaction time t
 /// runs from the path's own time: while the path's age is below t, the place where the profile is
@@ -89,6 +99,9 @@ class PathTracker {
   /// one, older than `max_data_age` against the newest velocity, outside the pose history, or
   /// without length.
   std::string TakePath(const PathInput& path);
+  /// Takes a race line. Returns why it was refused, empty if taken: not newer than the last one,
+  /// outside the pose history, or without length.
+  std::string TakeRaceLine(const RaceLineInput& line);
   /// Messages older than the last one are ignored; returns false for them.
   bool TakeAsState(const AsStateInput& as_state);
   bool TakePipelineStatus(const PipelineStatusInput& status);
@@ -106,10 +119,15 @@ class PathTracker {
     double progress;  // arc length of base [m]
   };
 
+  void CompareRaceLine(const PathInput& input, const Pose2& T_own_local);
   double SeenLength(const ReferencePath& path, const PathInput& input,
                     const Pose2& T_own_local) const;
+  ReferencePath::Location LocateOnPath(const Pose2& T_own_base) const;
+  /// On the path, the race line, or on what lies between them while the car moves over.
   ReferencePath::Location Locate(const Pose2& T_own_base) const;
   double Steer(const Pose2& T_own_base) const;
+  SpeedProfile::Limit PathSpeed(int64_t utime) const;
+  SpeedProfile::Limit RaceSpeed() const;
   SpeedProfile::Limit TargetSpeed(int64_t utime) const;
   /// Places the car on the path and fills in what follows from it; the speed wanted, empty without
   /// a path.
@@ -125,10 +143,12 @@ class PathTracker {
   SteeringLaw steering_;
   WheelForces forces_;
   PoseHistory history_;
+  RaceGuide race_;
   std::optional<Followed> followed_;
   std::optional<AsStateInput> as_state_;
   std::optional<PipelineStatusInput> status_;
-  Twist2 twist_;  // the last valid one
+  std::optional<double> finish_deceleration_;  // once the mission is finished [m/s2]
+  Twist2 twist_;                               // the last valid one
   int64_t last_utime_ = 0;
   TrackerCommand last_;
 };

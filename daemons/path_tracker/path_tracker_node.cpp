@@ -28,6 +28,23 @@ std::string ProblemOf(const track_t& message) {
   return {};
 }
 
+std::string ProblemOf(const race_line_t& message) {
+  if (message.num_points < 2) return "a line has at least two points";
+  if (message.num_points > kMaxPathPoints) return "too many points";
+  for (const race_line_point_t& point : message.points) {
+    if (std::hypot(point.x_m - message.x_m, point.y_m - message.y_m) > kMaxPathExtent) {
+      return "a point is too far from the car";
+    }
+    if (point.speed_mps < 0.0 || point.speed_mps > kMaxSpeed) return "a speed is out of range";
+  }
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> covariance(
+      message.pose_covariance);
+  if (Eigen::LLT<Eigen::Matrix3d>(covariance).info() != Eigen::Success) {
+    return "its covariance is not positive definite";
+  }
+  return {};
+}
+
 std::string ProblemOf(const velocity_t& message) {
   const double speed = std::hypot(message.vx_mps, message.vy_mps);
   if (speed > kMaxSpeed || std::abs(message.yaw_rate_radps) > kMaxYawRate) return "out of range";
@@ -47,8 +64,23 @@ PathInput ToPathInput(const track_t& message) {
   bool seen = true;
   for (const path_point_t& point : message.path) {
     input.points.emplace_back(point.x_m, point.y_m);
+    input.widths.push_back(point.width_m);
     seen = seen && point.extrapolated == 0;
     if (seen) ++input.num_seen;
+  }
+  return input;
+}
+
+RaceLineInput ToRaceLineInput(const race_line_t& message) {
+  RaceLineInput input;
+  input.utime = message.utime;
+  input.T_map_base = {message.x_m, message.y_m, message.yaw_rad};
+  // Row-major; a sum of variances bounds that of the worst direction.
+  input.position_sigma = std::sqrt(message.pose_covariance[0] + message.pose_covariance[4]);
+  input.yaw_sigma = std::sqrt(message.pose_covariance[8]);
+  for (const race_line_point_t& point : message.points) {
+    input.points.emplace_back(point.x_m, point.y_m);
+    input.speeds.push_back(point.speed_mps);
   }
   return input;
 }
@@ -83,6 +115,7 @@ drive_command_t ToMessage(const TrackerCommand& command, int64_t utime) {
   message.target_speed_mps = command.target_speed;
   message.target_acceleration_mps2 = command.target_acceleration;
   message.lateral_error_m = command.lateral_error;
+  message.on_race_line = command.on_race_line;
   return message;
 }
 
@@ -117,8 +150,8 @@ void LoadSteering(const Config& config, PathTrackerParams& params) {
 
 void LoadForces(const Config& config, PathTrackerParams& params) {
   WheelForcesParams& forces = params.forces;
-  forces.drag = config.Number("drag_n_per_mps2", {0.0, 10.0});
-  forces.rolling_resistance = config.Number("rolling_resistance_n", {0.0, 1000.0});
+  forces.drag = params.car.drag;
+  forces.rolling_resistance = params.car.rolling_resistance;
   forces.grip = config.Number("grip_mps2", {1.0, 30.0});
   forces.min_braking = config.Number("min_braking_mps2", {0.0, 20.0});
   forces.max_regeneration = config.Number("max_regeneration_n", {0.0, 10000.0});
@@ -128,6 +161,28 @@ void LoadForces(const Config& config, PathTrackerParams& params) {
   params.rates.brake = config.Number("brake_rate_per_s", {0.1, 100.0});
 }
 
+// After all that the race line shares with the path.
+void LoadRace(const Config& config, PathTrackerParams& params) {
+  RaceGuideParams& race = params.race;
+  race.path = params.path;
+  race.path.max_length = config.Number("max_race_length_m", {20.0, 300.0});
+  race.speed.max_speed = config.Number("race_max_speed_mps", {0.5, 40.0});
+  // The line's own speeds decide; this bounds them by what the commands may ask of the tyres.
+  race.speed.lateral_acceleration = params.forces.grip;
+  race.speed.braking = params.control.max_braking;
+  params.race_max_acceleration = config.Number("race_max_acceleration_mps2", {0.1, 20.0});
+  race.speed.rise = params.race_max_acceleration;
+  race.body_width = params.car.body_width;
+  race.max_age = params.gate.max_data_age;
+  race.max_position_sigma = config.Number("race_max_position_sigma_m", {0.01, 2.0});
+  race.max_yaw_sigma = config.Number("race_max_yaw_sigma_rad", {0.001, 0.5});
+  race.max_jump = config.Number("race_max_jump_m", {0.01, 2.0});
+  race.overlap = config.Number("race_overlap_m", {0.0, 2.0});
+  race.checked_length = config.Number("race_checked_length_m", {1.0, 50.0});
+  race.healthy_for = config.Number("race_healthy_for_s", {0.0, 10.0});
+  race.blend_time = config.Number("race_blend_s", {0.05, 5.0});
+}
+
 void LoadGate(const Config& config, PathTrackerParams& params) {
   params.gate.as_state_deadline = channels::kAsState.deadline_s;
   params.gate.pipeline_status_deadline = channels::kPipelineStatus.deadline_s;
@@ -135,6 +190,7 @@ void LoadGate(const Config& config, PathTrackerParams& params) {
   params.gate.max_path_age = config.Number("max_path_age_s", {0.05, 2.0});
   params.gate.stop_deceleration = config.Number("stop_deceleration_mps2", {0.5, 15.0});
   params.gate.finish_deceleration = config.Number("finish_deceleration_mps2", {0.5, 15.0});
+  params.finish_distance = config.Number("finish_distance_m", {5.0, 30.0});
 }
 
 }  // namespace
@@ -149,6 +205,7 @@ PathTrackerParams LoadPathTrackerParams(const Config& config) {
   LoadSteering(config, params);
   LoadForces(config, params);
   LoadGate(config, params);
+  LoadRace(config, params);
   config.Finish();
   return params;
 }
@@ -156,6 +213,7 @@ PathTrackerParams LoadPathTrackerParams(const Config& config) {
 PathTrackerNode::PathTrackerNode(const PathTrackerParams& params, Bus& bus)
     : bus_(bus), tracker_(params) {
   bus.Subscribe(channels::kTrack, [this](const track_t& message) { OnTrack(message); });
+  bus.Subscribe(channels::kRaceLine, [this](const race_line_t& message) { OnRaceLine(message); });
   bus.Subscribe(channels::kVelocity, [this](const velocity_t& message) { OnVelocity(message); });
   bus.Subscribe(channels::kAsState, [this](const as_state_t& message) {
     const bool driving = message.state == as_state_t::STATE_DRIVING;
@@ -175,6 +233,12 @@ void PathTrackerNode::OnTrack(const track_t& message) {
   std::string problem = ProblemOf(message);
   if (problem.empty()) problem = tracker_.TakePath(ToPathInput(message));
   if (!problem.empty()) bus_.Refuse(channels::kTrack, problem);
+}
+
+void PathTrackerNode::OnRaceLine(const race_line_t& message) {
+  std::string problem = ProblemOf(message);
+  if (problem.empty()) problem = tracker_.TakeRaceLine(ToRaceLineInput(message));
+  if (!problem.empty()) bus_.Refuse(channels::kRaceLine, problem);
 }
 
 void PathTrackerNode::OnVelocity(const velocity_t& message) {

@@ -9,8 +9,8 @@ namespace hairpin {
 /// Reads path_tracker.yaml and car.yaml; deadlines come from the channel table. Throws ConfigError.
 PathTrackerParams LoadPathTrackerParams(const Config& config);
 
-/// TRACK, PIPELINE_STATUS, AS_STATE, VELOCITY -> DRIVE_COMMAND, one for each VELOCITY, with its
-/// utime.
+/// TRACK, RACE_LINE, PIPELINE_STATUS, AS_STATE, VELOCITY -> DRIVE_COMMAND, one for each VELOCITY,
+/// with its utime.
 class PathTrackerNode {
  public:
   PathTrackerNode(const PathTrackerParams& params, Bus& bus);
@@ -19,6 +19,7 @@ class PathTrackerNode {
 
  private:
   void OnTrack(const track_t& message);
+  void OnRaceLine(const race_line_t& message);
   void OnVelocity(const velocity_t& message);
 
   Bus& bus_;

@@ -112,6 +112,12 @@ ReferencePath::ReferencePath(const Points& points, const ReferencePathParams& pa
   curvature_.back() = curvature_[count - 2];
 }
 
+Eigen::Vector2d ReferencePath::PointAt(double s) const {
+  const double position = std::clamp(s / spacing_, 0.0, static_cast<double>(points_.size() - 1));
+  const size_t i = std::min(static_cast<size_t>(position), points_.size() - 2);
+  return points_[i] + (position - static_cast<double>(i)) * (points_[i + 1] - points_[i]);
+}
+
 ReferencePath::Location ReferencePath::At(const Eigen::Vector2d& point, size_t segment,
                                           double along) const {
   const Eigen::Vector2d start = points_[segment];

@@ -38,6 +38,9 @@ class ReferencePath {
   /// The nearest place with an arc length from `s_min` to `s_max`, in the frame of the points.
   Location Locate(const Eigen::Vector2d& point, double s_min, double s_max) const;
 
+  /// The place at arc length `s`, at an end's where it lies beyond.
+  Eigen::Vector2d PointAt(double s) const;
+
   double spacing() const { return spacing_; }
   double length() const { return spacing_ * static_cast<double>(points_.size() - 1); }
   /// By sample, `spacing()` apart, from the start [1/m].

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -16,6 +17,7 @@ void Check(const SpeedProfileParams& params) {
   require(params.lateral_acceleration > 0.0, "lateral_acceleration_mps2 must be > 0");
   require(params.braking > 0.0, "braking_mps2 must be > 0");
   require(params.stop_margin >= 0.0, "stop_margin_m must be >= 0");
+  require(params.rise >= 0.0, "the rise must be >= 0");
 }
 
 }  // namespace
@@ -31,12 +33,7 @@ SpeedProfile::SpeedProfile(const std::vector<double>& curvature, double spacing,
   const double length = spacing * static_cast<double>(curvature.size() - 1);
   stop_at_ = std::min(seen_length, length) - params.stop_margin;
 
-  corners_.reserve(curvature.size());
-  const double most = params.max_speed * params.max_speed;
-  for (const double k : curvature) {
-    const double lateral = params.lateral_acceleration;
-    corners_.push_back(std::abs(k) * most > lateral ? lateral / std::abs(k) : most);
-  }
+  LimitCorners();
   BrakeBackward(corners_, corners_.size() - 1);
 
   stop_ = corners_;
@@ -47,6 +44,31 @@ SpeedProfile::SpeedProfile(const std::vector<double>& curvature, double spacing,
     stop_[i] = std::min(stop_[i], 2.0 * params.braking * left);
   }
   BrakeBackward(stop_, before);
+}
+
+SpeedProfile::SpeedProfile(const std::vector<double>& curvature, double spacing,
+                           const std::vector<double>& planned, const SpeedProfileParams& params)
+    : params_(params), spacing_(spacing), curvature_(curvature) {
+  Check(params);
+  if (curvature.size() < 2 || !(spacing > 0.0) || planned.size() != curvature.size()) {
+    throw std::invalid_argument(
+        "SpeedProfile: needs two samples, spacing > 0 and a speed for each sample");
+  }
+  stop_at_ = std::numeric_limits<double>::infinity();
+  LimitCorners();
+  for (size_t i = 0; i < planned.size(); ++i)
+    corners_[i] = std::min(corners_[i], planned[i] * planned[i]);
+  BrakeBackward(corners_, corners_.size() - 1);
+  stop_ = corners_;
+}
+
+void SpeedProfile::LimitCorners() {
+  corners_.reserve(curvature_.size());
+  const double most = params_.max_speed * params_.max_speed;
+  for (const double k : curvature_) {
+    const double lateral = params_.lateral_acceleration;
+    corners_.push_back(std::abs(k) * most > lateral ? lateral / std::abs(k) : most);
+  }
 }
 
 void SpeedProfile::BrakeBackward(std::vector<double>& squared_speed, size_t from) const {
@@ -69,7 +91,7 @@ SpeedProfile::Limit SpeedProfile::At(const std::vector<double>& squared_speed, d
   const double t = position - static_cast<double>(i);
   const double squared = (1.0 - t) * squared_speed[i] + t * squared_speed[i + 1];
   const double slope = 0.5 * (squared_speed[i + 1] - squared_speed[i]) / spacing_;
-  return {std::sqrt(std::max(squared, 0.0)), std::clamp(slope, -params_.braking, 0.0)};
+  return {std::sqrt(std::max(squared, 0.0)), std::clamp(slope, -params_.braking, params_.rise)};
 }
 
 }  // namespace hairpin

@@ -10,6 +10,7 @@ struct SpeedProfileParams {
   double lateral_acceleration = 0.0;  // planned in corners [m/s2], > 0
   double braking = 0.0;               // planned deceleration [m/s2], > 0
   double stop_margin = 0.0;           // stand this far before the end of what was seen [m], >= 0
+  double rise = 0.0;  // acceleration of the profile that is told as such, no more [m/s2], >= 0
 };
 
 /// The highest speeds along a path that its curvature, the friction circle and the end of the seen
@@ -26,11 +27,16 @@ class SpeedProfile {
   /// than two samples, spacing or length not > 0.
   SpeedProfile(const std::vector<double>& curvature, double spacing, double seen_length,
                const SpeedProfileParams& params);
+  /// The same with a speed planned for each sample, which is never exceeded [m/s], and no end: the
+  /// plan goes on beyond it. Throws too where there are not as many speeds as samples.
+  SpeedProfile(const std::vector<double>& curvature, double spacing,
+               const std::vector<double>& planned, const SpeedProfileParams& params);
 
-  /// Speed at a place, and the deceleration with which the profile falls there.
+  /// Speed at a place, and the deceleration with which the profile falls there; or the acceleration
+  /// with which it rises, up to `rise`.
   struct Limit {
     double speed = 0.0;         // [m/s]
-    double acceleration = 0.0;  // [m/s2], <= 0
+    double acceleration = 0.0;  // [m/s2]
   };
   /// What the corners ahead allow at arc length `s` [m]; the path's end is no limit here.
   Limit Corners(double s) const { return At(corners_, s); }
@@ -39,6 +45,7 @@ class SpeedProfile {
   Limit Stop(double s) const;
 
  private:
+  void LimitCorners();
   void BrakeBackward(std::vector<double>& squared_speed, size_t from) const;
   Limit At(const std::vector<double>& squared_speed, double s) const;
 

@@ -11,6 +11,14 @@ SlipParams LoadSlip(const Config& config) {
           .min_speed = config.Number("min_speed_mps", {0.1, 10.0})};
 }
 
+TyreParams LoadTyre(const Config& config) {
+  return {.stiffness = config.Number("stiffness_per_load", {1.0, 100.0}),
+          .shape = config.Number("shape", {1.0, 2.0}),
+          .sigma_angle = config.Number("sigma_angle_rad", {1e-4, 0.2}),
+          .sigma_angle_share = config.Number("sigma_angle_share", {0.01, 2.0}),
+          .angle_time_constant = config.Number("angle_time_constant_s", {0.01, 5.0})};
+}
+
 SensorNoise LoadNoise(const Config& config) {
   return {.gyro = config.Number("gyro_radps", {1e-4, 0.5}),
           .accelerometer = config.Number("accelerometer_mps2", {1e-3, 10.0}),
@@ -27,6 +35,7 @@ SensorNoise LoadNoise(const Config& config) {
 StandstillParams LoadStandstill(const Config& config) {
   return {.hold = config.Number("hold_s", {0.05, 5.0}),
           .max_wheel_speed = config.Number("max_wheel_speed_radps", {0.01, 5.0}),
+          .max_ground_speed = config.Number("max_ground_speed_mps", {0.01, 1.0}),
           .max_wheel_torque = config.Number("max_wheel_torque_nm", {0.1, 100.0}),
           .max_yaw_rate = config.Number("max_yaw_rate_radps", {0.001, 0.5}),
           .max_acceleration = config.Number("max_acceleration_mps2", {0.01, 5.0}),
@@ -64,6 +73,7 @@ VelocityEstimatorParams LoadEstimator(const Config& config) {
                    .yaw_rate = motion.Number("yaw_rate_radps_per_sqrt_s", {1e-3, 50.0}),
                    .acceleration = motion.Number("acceleration_mps2_per_sqrt_s", {1e-2, 500.0})};
   params.slip = LoadSlip(config.Section("slip"));
+  params.tyre = LoadTyre(config.Section("tyre"));
   params.noise = LoadNoise(config.Section("sensor_noise"));
   params.deadlines = {.imu = channels::kImu.deadline_s,
                       .ground_speed = channels::kGroundSpeed.deadline_s,

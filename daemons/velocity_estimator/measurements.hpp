@@ -23,11 +23,12 @@ struct GroundSpeedReading {
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
 };
 
-/// Wheel speeds [rad/s] and motor torques at the wheels [N m].
+/// Wheel speeds [rad/s] and motor torques at the wheels [N m]; none where the currents are not
+/// measured.
 struct MotorsReading {
   int64_t utime = 0;
   Wheels speed{};
-  Wheels torque{};
+  std::optional<Wheels> torque;
 };
 
 /// Angle of the front wheels, positive to the left [rad].

@@ -31,14 +31,28 @@ Eigen::Vector2d VelocityAt(const StateVector& state, const Eigen::Vector2d& posi
           state[kVelocity + 1] + state[kYawRate] * position.x()};
 }
 
-Wheels SlipModel::Sigmas(const Wheels& torque, double acceleration) const {
+double SlipAngle(double acceleration, const TyreParams& tyre, double friction) {
+  constexpr double kNearTheLimit = 0.95;
+  const double used =
+      std::clamp(acceleration / (friction * kGravity), -kNearTheLimit, kNearTheLimit);
+  const double b = tyre.stiffness / (tyre.shape * friction);
+  return std::tan(std::asin(used) / tyre.shape) / b;
+}
+
+double SlipModel::Mean(double acceleration) const {
+  const double limit = params_.friction * kGravity;
+  return std::clamp(acceleration, -limit, limit) / (kGravity * tyre_.stiffness);
+}
+
+Wheels SlipModel::Sigmas(const std::optional<Wheels>& torque, double acceleration) const {
   const double force_limit = params_.friction * car_.mass * kGravity / 4.0;
   const double braking = car_.mass * std::max(0.0, -acceleration);
+  const double driving = torque ? 0.0 : car_.mass * std::max(0.0, acceleration) / 4.0;
   Wheels sigmas;
   for (size_t i = 0; i < sigmas.size(); ++i) {
     const double brake_share = i < 2 ? car_.front_brake_share : 1.0 - car_.front_brake_share;
-    const double force =
-        std::max(std::abs(torque[i]) / car_.wheel_radius, 0.5 * brake_share * braking);
+    const double motor = torque ? std::abs((*torque)[i]) / car_.wheel_radius : driving;
+    const double force = std::max(motor, 0.5 * brake_share * braking);
     sigmas[i] = params_.sigma_free + params_.sigma_at_limit * std::min(1.0, force / force_limit);
   }
   return sigmas;
@@ -66,6 +80,21 @@ std::array<WheelGeometry, 4> WheelGeometries(const Car& car, double steering_ang
   const Eigen::Vector2d rear = Eigen::Vector2d::UnitX();
   return {
       {{positions[0], front}, {positions[1], front}, {positions[2], rear}, {positions[3], rear}}};
+}
+
+std::array<WheelGeometry, 4> WheelGeometriesAlong(const Car& car, const StateVector& state) {
+  std::array<WheelGeometry, 4> wheels = WheelGeometries(car, 0.0);
+  for (size_t i = 0; i < 2; ++i) {
+    const Eigen::Vector2d velocity = VelocityAt(state, wheels[i].position);
+    if (velocity.x() > 0.0) wheels[i].direction = velocity.normalized();
+  }
+  return wheels;
+}
+
+double RearAxleSlide(const StateVector& state, const VelocityEstimatorParams& params) {
+  const double lateral = VelocityAt(state, {-params.car.rear_axle, 0.0}).y();
+  const double angle = SlipAngle(state[kAcceleration + 1], params.tyre, params.slip.friction);
+  return lateral + state[kVelocity] * angle;
 }
 
 double HubSpeed(const StateVector& state, const WheelGeometry& wheel) {

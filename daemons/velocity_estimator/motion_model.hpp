@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "daemons/velocity_estimator/measurements.hpp"
 #include "daemons/velocity_estimator/velocity_estimator_params.hpp"
@@ -19,21 +20,31 @@ StateVector Move(const StateVector& state, double dt);
 /// Velocity in base of a point fixed to the car: v + r x p.
 Eigen::Vector2d VelocityAt(const StateVector& state, const Eigen::Vector2d& position);
 
-/// Slip of the wheels as a first-order Gauss-Markov process about zero, bounded by the force that
-/// each tyre passes: motor torque, and the friction brakes' share of the deceleration. A free wheel
-/// hardly slips.
+/// Slip angle of a tyre that passes `acceleration` times its load over g: the inverse of the tyre
+/// curve, level near the limit [rad].
+double SlipAngle(double acceleration, const TyreParams& tyre, double friction);
+
+/// Slip of the wheels as a first-order Gauss-Markov process about what the tyres' stiffness says
+/// for the present longitudinal force, in parts as the load. Its deviation is bounded by the force
+/// that each tyre passes: motor torque, and the friction brakes' share of the deceleration. A free
+/// wheel hardly slips. Where the torque is not measured, the acceleration tells it, in equal parts.
 class SlipModel {
  public:
-  SlipModel(const SlipParams& params, const Car& car) : params_(params), car_(car) {}
+  SlipModel(const SlipParams& params, const TyreParams& tyre, const Car& car)
+      : params_(params), tyre_(tyre), car_(car) {}
+
+  /// The slip about which all wheels vary, for a longitudinal acceleration [m/s^2].
+  double Mean(double acceleration) const;
 
   /// Standard deviations of the slips, for motor torques [N m] and longitudinal acceleration
   /// [m/s^2].
-  Wheels Sigmas(const Wheels& torque, double acceleration) const;
+  Wheels Sigmas(const std::optional<Wheels>& torque, double acceleration) const;
   /// Share of a slip that is left after `dt`.
   double Decay(double dt) const;
 
  private:
   SlipParams params_;
+  TyreParams tyre_;
   Car car_;
 };
 
@@ -49,6 +60,14 @@ struct WheelGeometry {
 
 /// fl fr rl rr, the front ones turned by `steering_angle`.
 std::array<WheelGeometry, 4> WheelGeometries(const Car& car, double steering_angle);
+
+/// The same where nobody knows how far the front wheels are turned: a wheel rolls where its hub
+/// goes, but for the slip angle, whose cosine is within 1 % of 1.
+std::array<WheelGeometry, 4> WheelGeometriesAlong(const Car& car, const StateVector& state);
+
+/// Lateral velocity of the rear axle beyond what its tyres' slip angle explains, v_y - r l_r + v_x
+/// alpha(a_y): near zero while the rear tyres grip [m/s].
+double RearAxleSlide(const StateVector& state, const VelocityEstimatorParams& params);
 
 /// Longitudinal velocity of the hub, v_x,ij: d . (v + r x p) [m/s].
 double HubSpeed(const StateVector& state, const WheelGeometry& wheel);

@@ -21,6 +21,13 @@ void SensorMonitor::TakeOut(int64_t utime) {
   streak_start_ = utime;
 }
 
+void SensorMonitor::Forgive() {
+  is_out_ = false;
+  last_agreed_ = true;
+  last_utime_.reset();
+  streak_start_ = 0;
+}
+
 bool SensorMonitor::IsFrozen(int64_t utime, const Eigen::Vector2d& reading, bool moving) {
   if (!moving || !reading_since_ || reading != reading_) {
     reading_ = reading;

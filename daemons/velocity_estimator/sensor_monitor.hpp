@@ -31,6 +31,9 @@ class SensorMonitor {
   void TakeOut(int64_t utime);
   void TakeBack() { is_out_ = false; }
 
+  /// Forgets all judgements, but not since when the readings have been the very same.
+  void Forgive();
+
   /// True once the same values have come for `frozen_after`. Noise makes that impossible for a live
   /// sensor in motion; at standstill, where `moving` is false, a coarse one may repeat itself.
   bool IsFrozen(int64_t utime, const Eigen::Vector2d& reading, bool moving);

@@ -24,12 +24,12 @@ SensorVotes::SensorVotes(const VelocityEstimatorParams& params)
       yaw_rate_(params.vote.time_constant) {}
 
 void SensorVotes::Cast(int64_t utime, const StateVector& state, const Readings& readings,
-                       const Wheels& slip_sigmas) {
+                       const std::array<WheelGeometry, 4>& wheels, const Wheels& slip_sigmas) {
   turned_ += state[kYawRate] * SecondsBetween(utime_, utime);
   utime_ = utime;
   if (readings.imu) CastImu(state, *readings.imu);
   if (readings.ground_speed) CastGroundSpeed(state, *readings.ground_speed);
-  if (readings.motors) CastMotors(state, readings, slip_sigmas);
+  if (readings.motors) CastMotors(state, *readings.motors, wheels, slip_sigmas);
   if (readings.gnss) CastGnss(state, *readings.gnss);
 }
 
@@ -48,11 +48,9 @@ void SensorVotes::CastImu(const StateVector& state, const ImuReading& reading) {
                  params_.vote.lateral_acceleration / speed, params_.deadlines.imu);
 }
 
-void SensorVotes::CastMotors(const StateVector& state, const Readings& readings,
+void SensorVotes::CastMotors(const StateVector& state, const MotorsReading& reading,
+                             const std::array<WheelGeometry, 4>& wheels,
                              const Wheels& slip_sigmas) {
-  const MotorsReading& reading = *readings.motors;
-  const double steering = readings.steering ? readings.steering->angle : 0.0;
-  const auto wheels = WheelGeometries(params_.car, steering);
   std::array<double, 4> residuals;
   for (size_t i = 0; i < residuals.size(); ++i) {
     residuals[i] = reading.speed[i] * params_.car.wheel_radius - HubSpeed(state, wheels[i]);
@@ -60,10 +58,7 @@ void SensorVotes::CastMotors(const StateVector& state, const Readings& readings,
   // Twice the slip's deviation: more is improbable for the average of wheels and time.
   const double slip = 2.0 * *std::min_element(slip_sigmas.begin(), slip_sigmas.end());
   const double slip_speed = slip * std::abs(state[kVelocity]);
-  // Without the steering angle, only the rear wheels tell.
-  const double residual =
-      readings.steering ? MiddleOf(residuals) : 0.5 * (residuals[2] + residuals[3]);
-  forward_.Cast(kWheels, reading.utime, residual, params_.vote.speed_offset + slip_speed,
+  forward_.Cast(kWheels, reading.utime, MiddleOf(residuals), params_.vote.speed_offset + slip_speed,
                 params_.deadlines.motors);
 }
 

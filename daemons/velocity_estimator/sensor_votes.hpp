@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -17,9 +18,10 @@ class SensorVotes {
  public:
   explicit SensorVotes(const VelocityEstimatorParams& params);
 
-  /// Adds the readings of one step, seen against the state of `utime` before any of them is fused.
+  /// Adds the readings of one step, seen against the state of `utime` before any of them is fused;
+  /// `wheels` as they are turned.
   void Cast(int64_t utime, const StateVector& state, const Readings& readings,
-            const Wheels& slip_sigmas);
+            const std::array<WheelGeometry, 4>& wheels, const Wheels& slip_sigmas);
   const ConsistencyVote& forward() const { return forward_; }
   const ConsistencyVote& lateral() const { return lateral_; }
   const ConsistencyVote& yaw_rate() const { return yaw_rate_; }
@@ -29,7 +31,8 @@ class SensorVotes {
 
  private:
   double SpeedTolerance(double speed) const;
-  void CastMotors(const StateVector& state, const Readings& readings, const Wheels& slip_sigmas);
+  void CastMotors(const StateVector& state, const MotorsReading& reading,
+                  const std::array<WheelGeometry, 4>& wheels, const Wheels& slip_sigmas);
   void CastGroundSpeed(const StateVector& state, const GroundSpeedReading& reading);
   void CastGnss(const StateVector& state, const GnssReading& reading);
   void CastImu(const StateVector& state, const ImuReading& reading);

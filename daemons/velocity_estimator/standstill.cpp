@@ -7,17 +7,22 @@
 
 namespace hairpin {
 
-bool Standstill::LooksStill(const ImuReading& imu, const MotorsReading& motors) const {
+bool Standstill::WheelsLookStill(const MotorsReading& motors) const {
   for (size_t i = 0; i < motors.speed.size(); ++i) {
     if (std::abs(motors.speed[i]) > params_.max_wheel_speed) return false;
-    if (std::abs(motors.torque[i]) > params_.max_wheel_torque) return false;
+    if (motors.torque && std::abs((*motors.torque)[i]) > params_.max_wheel_torque) return false;
   }
-  return std::abs(imu.yaw_rate) <= params_.max_yaw_rate &&
-         imu.acceleration.norm() <= params_.max_acceleration;
+  return true;
 }
 
-bool Standstill::Detect(const ImuReading& imu, const std::optional<MotorsReading>& motors) {
-  if (!motors || !LooksStill(imu, *motors)) {
+bool Standstill::Detect(const ImuReading& imu, const std::optional<MotorsReading>& motors,
+                        const std::optional<GroundSpeedReading>& ground_speed) {
+  const bool is_quiet = std::abs(imu.yaw_rate) <= params_.max_yaw_rate &&
+                        imu.acceleration.norm() <= params_.max_acceleration;
+  const bool is_slow =
+      motors ? WheelsLookStill(*motors)
+             : ground_speed && ground_speed->velocity.norm() <= params_.max_ground_speed;
+  if (!is_quiet || !is_slow) {
     still_since_.reset();
     return false;
   }

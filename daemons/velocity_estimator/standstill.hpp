@@ -11,6 +11,7 @@ namespace hairpin {
 struct StandstillParams {
   double hold = 0.0;                    // s that all signs must have lasted
   double max_wheel_speed = 0.0;         // rad/s, every wheel
+  double max_ground_speed = 0.0;        // m/s, optical; asked where the wheels are not heard
   double max_wheel_torque = 0.0;        // N m, every wheel
   double max_yaw_rate = 0.0;            // rad/s
   double max_acceleration = 0.0;        // m/s^2
@@ -28,9 +29,10 @@ class Standstill {
  public:
   explicit Standstill(const StandstillParams& params) : params_(params) {}
 
-  /// Takes one IMU reading as it comes and the wheels, if heard with it. Returns whether the car
-  /// seems to stand still.
-  bool Detect(const ImuReading& imu, const std::optional<MotorsReading>& motors);
+  /// Takes one IMU reading as it comes and the wheels, if heard with it; without them the optical
+  /// sensor. Returns whether the car seems to stand still.
+  bool Detect(const ImuReading& imu, const std::optional<MotorsReading>& motors,
+              const std::optional<GroundSpeedReading>& ground_speed = std::nullopt);
 
   /// Averages a reading of a car that stands, `dt` [s] after the one before.
   void LearnBias(const ImuReading& imu, double dt);
@@ -39,7 +41,7 @@ class Standstill {
   const Eigen::Vector2d& accelerometer_bias() const { return accelerometer_bias_; }
 
  private:
-  bool LooksStill(const ImuReading& imu, const MotorsReading& motors) const;
+  bool WheelsLookStill(const MotorsReading& motors) const;
 
   StandstillParams params_;
   std::optional<int64_t> still_since_;

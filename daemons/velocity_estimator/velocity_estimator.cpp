@@ -85,6 +85,7 @@ Readings VelocityEstimator::CollectAll() {
   Readings readings{Collect(imu_), Collect(ground_speed_), Collect(motors_), Collect(steering_),
                     Collect(gnss_)};
   if (readings.motors) last_motors_ = readings.motors;
+  if (readings.ground_speed) last_ground_speed_ = readings.ground_speed;
   if (readings.steering) last_steering_ = readings.steering;
   const bool is_fresh = last_steering_ && SecondsBetween(last_steering_->utime, *utime_) <=
                                               params_.deadlines.steering;
@@ -112,9 +113,13 @@ VelocityEstimate VelocityEstimator::Advance(int64_t utime) {
 }
 
 void VelocityEstimator::FuseStandstill(const ImuReading& imu, double dt) {
-  const bool is_fresh =
-      last_motors_ && SecondsBetween(last_motors_->utime, *utime_) <= params_.deadlines.motors;
-  if (standstill_.Detect(imu, is_fresh ? last_motors_ : std::nullopt) && filter_.FuseStandstill())
+  const auto fresh = [this](const auto& reading, double deadline) {
+    const bool is_fresh = reading && SecondsBetween(reading->utime, *utime_) <= deadline;
+    return is_fresh ? reading : std::nullopt;
+  };
+  const auto motors = fresh(last_motors_, params_.deadlines.motors);
+  const auto ground_speed = fresh(last_ground_speed_, params_.deadlines.ground_speed);
+  if (standstill_.Detect(imu, motors, ground_speed) && filter_.FuseStandstill())
     standstill_.LearnBias(imu, dt);
 }
 
@@ -143,6 +148,7 @@ VelocityEstimate VelocityEstimator::Estimate() const {
   for (size_t i = 0; i < estimate.slip.size(); ++i)
     estimate.slip[i] = state[kSlip + static_cast<int>(i)];
   estimate.states = filter_.StatesAt(*utime_);
+  estimate.innovations = filter_.innovations();
   return estimate;
 }
 

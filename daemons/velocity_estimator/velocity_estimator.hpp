@@ -25,6 +25,7 @@ struct VelocityEstimate {
   Eigen::Vector2d acceleration = Eigen::Vector2d::Zero();    // base [m/s^2]
   Wheels slip{};
   SensorStates states;
+  InnovationStatistics innovations;
 };
 
 /// Velocity of the car from all sensors that tell of it. Source: [paper III], PAPER_NOTES "Velocity
@@ -85,6 +86,7 @@ class VelocityEstimator {
   Inbox<SteeringReading> steering_;
   Inbox<GnssReading> gnss_;
   std::optional<MotorsReading> last_motors_;
+  std::optional<GroundSpeedReading> last_ground_speed_;
   std::optional<SteeringReading> last_steering_;
   std::optional<int64_t> utime_;
   std::optional<int64_t> first_utime_;  // heard of anything

@@ -24,9 +24,9 @@ GroundSpeedReading ToReading(const ground_speed_t& message) {
 }
 
 MotorsReading ToReading(const motors_t& message) {
-  MotorsReading reading{message.utime, {}, {}};
+  MotorsReading reading{message.utime, {}, Wheels{}};
   std::copy_n(message.wheel_speed_radps, 4, reading.speed.begin());
-  std::copy_n(message.wheel_torque_nm, 4, reading.torque.begin());
+  std::copy_n(message.wheel_torque_nm, 4, reading.torque->begin());
   return reading;
 }
 

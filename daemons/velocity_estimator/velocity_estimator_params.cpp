@@ -36,6 +36,11 @@ void ValidateNoise(const VelocityEstimatorParams& params) {
   RequirePositive("slip.time_constant", params.slip.time_constant);
   RequirePositive("slip.friction", params.slip.friction);
   RequirePositive("slip.min_speed", params.slip.min_speed);
+  RequirePositive("tyre.stiffness", params.tyre.stiffness);
+  Require(params.tyre.shape >= 1.0, "tyre.shape", params.tyre.shape, ">=", 1.0);
+  RequirePositive("tyre.sigma_angle", params.tyre.sigma_angle);
+  RequirePositive("tyre.sigma_angle_share", params.tyre.sigma_angle_share);
+  RequirePositive("tyre.angle_time_constant", params.tyre.angle_time_constant);
   RequirePositive("noise.gyro", params.noise.gyro);
   RequirePositive("noise.accelerometer", params.noise.accelerometer);
   RequirePositive("noise.ground_speed", params.noise.ground_speed);
@@ -67,6 +72,7 @@ void ValidateTimes(const VelocityEstimatorParams& params) {
 void ValidateStandstill(const StandstillParams& params) {
   RequirePositive("standstill.hold", params.hold);
   RequirePositive("standstill.max_wheel_speed", params.max_wheel_speed);
+  RequirePositive("standstill.max_ground_speed", params.max_ground_speed);
   RequirePositive("standstill.max_wheel_torque", params.max_wheel_torque);
   RequirePositive("standstill.max_yaw_rate", params.max_yaw_rate);
   RequirePositive("standstill.max_acceleration", params.max_acceleration);

@@ -23,6 +23,16 @@ struct SlipParams {
   double min_speed = 0.0;       // m/s below which slip is measured against this speed
 };
 
+/// The tyres, all alike: lateral force over load by slip angle, D sin(C atan(B alpha)) [Pacejka
+/// 1987, without E], D = SlipParams::friction. Their longitudinal slip has the same stiffness.
+struct TyreParams {
+  double stiffness = 0.0;            // B C D, per rad and per unit of slip
+  double shape = 0.0;                // C
+  double sigma_angle = 0.0;          // rad that the slip angle is off by: rolling straight
+  double sigma_angle_share = 0.0;    // and in proportion to it
+  double angle_time_constant = 0.0;  // s that such an error lasts
+};
+
 struct SensorNoise {
   double gyro = 0.0;                     // rad/s
   double accelerometer = 0.0;            // m/s^2
@@ -60,6 +70,7 @@ struct VelocityEstimatorParams {
   Car car;
   MotionNoise motion;
   SlipParams slip;
+  TyreParams tyre;
   SensorNoise noise;
   SensorDeadlines deadlines;
   SensorMonitorParams monitor;

@@ -32,7 +32,7 @@ void TakeBack(std::span<SensorMonitor> sensors) {
 
 VelocityFilter::VelocityFilter(const VelocityEstimatorParams& params)
     : params_(params),
-      slip_model_(params.slip, params.car),
+      slip_model_(params.slip, params.tyre, params.car),
       filter_(StateVector::Zero(), PriorCovariance(params.slip)),
       votes_(params),
       gyro_(params.monitor, params.deadlines.imu),
@@ -45,22 +45,31 @@ VelocityFilter::VelocityFilter(const VelocityEstimatorParams& params)
               SensorMonitor(params.monitor, params.deadlines.motors)} {}
 
 void VelocityFilter::Restart(int64_t utime) {
+  // A sensor that stood still before does so afterwards, too.
+  std::array<SensorMonitor, 4> wheels = wheels_;
+  for (SensorMonitor& wheel : wheels) wheel.Forgive();
+  SensorMonitor ground_speed = ground_speed_;
+  ground_speed.Forgive();
   *this = VelocityFilter(params_);
+  wheels_ = wheels;
+  ground_speed_ = ground_speed;
   utime_ = utime;
 }
 
 void VelocityFilter::PredictTo(int64_t utime) {
   const double duration = SecondsBetween(utime_, utime);
   utime_ = utime;
+  step_ = std::max(0.0, duration);
   if (duration <= 0.0) return;
   const int steps = static_cast<int>(std::ceil(duration / kLongestStep));
   const double dt = duration / steps;
   const double decay = slip_model_.Decay(dt);
   for (int i = 0; i < steps; ++i) {
     const Wheels sigmas = slip_model_.Sigmas(torque_, mean()[kAcceleration]);
-    const auto process = [dt, decay](const StateVector& state) {
+    const auto process = [this, dt, decay](const StateVector& state) {
       StateVector moved = Move(state, dt);
-      moved.segment<4>(kSlip) *= decay;
+      const double slip = slip_model_.Mean(state[kAcceleration]);
+      moved.segment<4>(kSlip).array() = slip + decay * (state.segment<4>(kSlip).array() - slip);
       return moved;
     };
     filter_.Predict(process, ProcessNoise(params_.motion, sigmas, decay, dt));
@@ -68,10 +77,11 @@ void VelocityFilter::PredictTo(int64_t utime) {
 }
 
 void VelocityFilter::Fuse(const Readings& readings) {
+  innovations_ = {};
   NoteMotion(readings);
   if (readings.motors) torque_ = readings.motors->torque;
   const Wheels sigmas = slip_model_.Sigmas(torque_, mean()[kAcceleration]);
-  if (IsCertain()) votes_.Cast(utime_, mean(), readings, sigmas);
+  if (IsCertain()) votes_.Cast(utime_, mean(), readings, WheelsAt(readings.steering), sigmas);
   FollowMajorities();
   if (readings.imu) FuseImu(*readings.imu);
   if (readings.ground_speed) FuseGroundSpeed(*readings.ground_speed);
@@ -79,6 +89,9 @@ void VelocityFilter::Fuse(const Readings& readings) {
   if (readings.gnss) FuseGnss(*readings.gnss);
   if (readings.steering && gyro_.StateAt(utime_) != SensorState::kUsed)
     FuseSteering(*readings.steering);
+  const bool is_lateral_known = ground_speed_.StateAt(utime_) == SensorState::kUsed ||
+                                gnss_.StateAt(utime_) == SensorState::kUsed;
+  if (!is_lateral_known) FuseRearAxle();
 }
 
 void VelocityFilter::FollowMajorities() {
@@ -130,9 +143,9 @@ void VelocityFilter::NoteMotion(const Readings& readings) {
 }
 
 template <int M, class Model>
-void VelocityFilter::FuseGated(SensorMonitor& monitor, int64_t utime,
-                               const Eigen::Matrix<double, M, 1>& measured, const Model& model,
-                               const Eigen::Matrix<double, M, M>& noise, bool is_possible) {
+double VelocityFilter::FuseGated(SensorMonitor& monitor, int64_t utime,
+                                 const Eigen::Matrix<double, M, 1>& measured, const Model& model,
+                                 const Eigen::Matrix<double, M, M>& noise, bool is_possible) {
   const double age = SecondsBetween(utime, utime_);
   const auto at_its_time = [age, &model](const StateVector& state) {
     return age == 0.0 ? model(state) : model(Move(state, -age));
@@ -145,18 +158,20 @@ void VelocityFilter::FuseGated(SensorMonitor& monitor, int64_t utime,
   const double gate = M == 1 ? params_.gate_1dof : params_.gate_2dof;
   const bool agrees = innovation.nis <= gate && !is_frozen && is_possible;
   if (monitor.Judge(utime, agrees)) filter_.Apply(innovation);
+  return innovation.nis;
 }
 
 void VelocityFilter::FuseImu(const ImuReading& reading) {
   const auto yaw_rate = [](const StateVector& state) { return Scalar(state[kYawRate]); };
-  FuseGated<1>(gyro_, reading.utime, Scalar(reading.yaw_rate), yaw_rate,
-               Scalar(std::pow(params_.noise.gyro, 2)));
+  innovations_.gyro = FuseGated<1>(gyro_, reading.utime, Scalar(reading.yaw_rate), yaw_rate,
+                                   Scalar(std::pow(params_.noise.gyro, 2)));
   const auto acceleration = [](const StateVector& state) -> Eigen::Vector2d {
     return state.segment<2>(kAcceleration);
   };
   const Eigen::Matrix2d noise =
       Eigen::Matrix2d::Identity() * std::pow(params_.noise.accelerometer, 2);
-  FuseGated<2>(accelerometer_, reading.utime, reading.acceleration, acceleration, noise);
+  innovations_.accelerometer =
+      FuseGated<2>(accelerometer_, reading.utime, reading.acceleration, acceleration, noise);
 }
 
 void VelocityFilter::FuseGroundSpeed(const GroundSpeedReading& reading) {
@@ -166,19 +181,29 @@ void VelocityFilter::FuseGroundSpeed(const GroundSpeedReading& reading) {
   };
   const double scale = params_.noise.ground_speed_scale * reading.velocity.norm();
   const double variance = std::pow(params_.noise.ground_speed, 2) + scale * scale;
-  FuseGated<2>(ground_speed_, reading.utime, reading.velocity, velocity,
-               Eigen::Matrix2d(Eigen::Matrix2d::Identity() * variance));
+  innovations_.ground_speed = FuseGated<2>(ground_speed_, reading.utime, reading.velocity, velocity,
+                                           Eigen::Matrix2d(Eigen::Matrix2d::Identity() * variance));
 }
 
 void VelocityFilter::FuseMotors(const MotorsReading& reading,
                                 const std::optional<SteeringReading>& steering) {
-  const auto wheels = WheelGeometries(params_.car, steering ? steering->angle : 0.0);
-  // Where the front wheels point is then unknown.
-  for (size_t i = steering ? 0 : 2; i < wheels.size(); ++i) FuseWheel(i, reading, wheels[i]);
+  const auto wheels = WheelsAt(steering);
+  // Without the steering angle a slow front wheel may roll in any direction.
+  const bool is_front_known = steering || mean()[kVelocity] > params_.slip.min_speed;
+  for (size_t i = is_front_known ? 0 : 2; i < wheels.size(); ++i) {
+    const double steering_sigma = i < 2 && steering ? params_.noise.steering : 0.0;
+    FuseWheel(i, reading, wheels[i], steering_sigma);
+  }
+}
+
+std::array<WheelGeometry, 4> VelocityFilter::WheelsAt(
+    const std::optional<SteeringReading>& steering) const {
+  return steering ? WheelGeometries(params_.car, steering->angle)
+                  : WheelGeometriesAlong(params_.car, mean());
 }
 
 void VelocityFilter::FuseWheel(size_t index, const MotorsReading& reading,
-                               const WheelGeometry& wheel) {
+                               const WheelGeometry& wheel, double steering_sigma) {
   const double radius = params_.car.wheel_radius;
   const double min_speed = params_.slip.min_speed;
   const int slip_index = kSlip + static_cast<int>(index);
@@ -186,14 +211,13 @@ void VelocityFilter::FuseWheel(size_t index, const MotorsReading& reading,
     return Scalar(WheelSpeed(HubSpeed(state, wheel), state[slip_index], radius, min_speed));
   };
   const Eigen::Vector2d across(-wheel.direction.y(), wheel.direction.x());
-  const bool is_steered = index < 2;
-  const double steering_sigma = is_steered ? params_.noise.steering : 0.0;
   const double steering = steering_sigma * across.dot(VelocityAt(mean(), wheel.position)) / radius;
   const double variance = std::pow(params_.noise.wheel_speed, 2) + steering * steering;
   const Wheels sigmas = slip_model_.Sigmas(reading.torque, mean()[kAcceleration]);
   const bool is_possible = IsSlipPossible(wheel, reading.speed[index] * radius, sigmas[index]);
-  FuseGated<1>(wheels_[index], reading.utime, Scalar(reading.speed[index]), speed, Scalar(variance),
-               is_possible);
+  innovations_.wheels[index] =
+      FuseGated<1>(wheels_[index], reading.utime, Scalar(reading.speed[index]), speed,
+                   Scalar(variance), is_possible);
 }
 
 void VelocityFilter::FuseSteering(const SteeringReading& reading) {
@@ -209,6 +233,20 @@ void VelocityFilter::FuseSteering(const SteeringReading& reading) {
   if (innovation.nis <= params_.gate_1dof) filter_.Apply(innovation);
 }
 
+void VelocityFilter::FuseRearAxle() {
+  const double speed = mean()[kVelocity];
+  if (step_ <= 0.0 || speed < params_.slip.min_speed) return;
+  const auto slide = [this](const StateVector& state) {
+    return Scalar(RearAxleSlide(state, params_));
+  };
+  const TyreParams& tyre = params_.tyre;
+  const double angle = std::abs(SlipAngle(mean()[kAcceleration + 1], tyre, params_.slip.friction));
+  const double sigma = speed * (tyre.sigma_angle + tyre.sigma_angle_share * angle);
+  // The error lasts: readings of one time constant together tell no more than one.
+  const double repeats = std::max(1.0, 2.0 * tyre.angle_time_constant / step_);
+  filter_.Apply(filter_.Compare<1>(Scalar(0.0), slide, Scalar(sigma * sigma * repeats)));
+}
+
 bool VelocityFilter::IsSlipPossible(const WheelGeometry& wheel, double rolling_speed,
                                     double slip_sigma) const {
   // Against the slip that the torque allows, not against the slip state: that would follow a
@@ -221,7 +259,9 @@ bool VelocityFilter::IsSlipPossible(const WheelGeometry& wheel, double rolling_s
   const double hub_variance = gradient.dot(covariance().topLeftCorner<3, 3>() * gradient);
   const double slip_speed = slip_sigma * std::max(std::abs(hub_speed), params_.slip.min_speed);
   const double noise = params_.noise.wheel_speed * params_.car.wheel_radius;
-  const double residual = rolling_speed - hub_speed;
+  const double slip = slip_model_.Mean(mean()[kAcceleration]);
+  const double residual =
+      rolling_speed - hub_speed - slip * std::max(std::abs(hub_speed), params_.slip.min_speed);
   return residual * residual <=
          params_.gate_1dof * (hub_variance + slip_speed * slip_speed + noise * noise);
 }
@@ -231,8 +271,8 @@ void VelocityFilter::FuseGnss(const GnssReading& reading) {
   const auto velocity = [&position](const StateVector& state) {
     return VelocityAt(state, position);
   };
-  FuseGated<2>(gnss_, reading.utime, VelocityInBase(reading), velocity,
-               CovarianceInBase(reading, params_.noise));
+  innovations_.gnss = FuseGated<2>(gnss_, reading.utime, VelocityInBase(reading), velocity,
+                                   CovarianceInBase(reading, params_.noise));
 }
 
 bool VelocityFilter::FuseStandstill() {

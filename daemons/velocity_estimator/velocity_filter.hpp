@@ -22,6 +22,16 @@ struct SensorStates {
   SensorState gnss = SensorState::kSilent;
 };
 
+/// Normalised innovations squared, y^T S^-1 y, of the readings of one step, used or not; empty
+/// where there was none. Chi-square of one degree of freedom (gyro, each wheel) or two.
+struct InnovationStatistics {
+  std::optional<double> gyro;
+  std::optional<double> accelerometer;
+  std::optional<double> ground_speed;
+  std::array<std::optional<double>, 4> wheels;
+  std::optional<double> gnss;
+};
+
 /// The unscented Kalman filter of the car's velocity: prediction, the measurement of each sensor
 /// with its lever arm, the chi-square gates, and the sensors' states. Source: PAPER_NOTES,
 /// "Velocity estimation".
@@ -49,20 +59,25 @@ class VelocityFilter {
   double yaw_rate_sigma() const;
   bool IsCertain() const;
   SensorStates StatesAt(int64_t utime) const;
+  /// Of the last `Fuse()`.
+  const InnovationStatistics& innovations() const { return innovations_; }
 
   static constexpr double kPriorVelocitySigma = 20.0;  // m/s: any speed this car reaches
 
  private:
   template <int M, class Model>
-  void FuseGated(SensorMonitor& monitor, int64_t utime, const Eigen::Matrix<double, M, 1>& measured,
-                 const Model& model, const Eigen::Matrix<double, M, M>& noise,
-                 bool is_possible = true);
+  double FuseGated(SensorMonitor& monitor, int64_t utime,
+                   const Eigen::Matrix<double, M, 1>& measured, const Model& model,
+                   const Eigen::Matrix<double, M, M>& noise, bool is_possible = true);
   void FuseImu(const ImuReading& reading);
   void FuseGroundSpeed(const GroundSpeedReading& reading);
   void FuseMotors(const MotorsReading& reading, const std::optional<SteeringReading>& steering);
-  void FuseWheel(size_t index, const MotorsReading& reading, const WheelGeometry& wheel);
+  void FuseWheel(size_t index, const MotorsReading& reading, const WheelGeometry& wheel,
+                 double steering_sigma);
   void FuseGnss(const GnssReading& reading);
   void FuseSteering(const SteeringReading& reading);
+  void FuseRearAxle();
+  std::array<WheelGeometry, 4> WheelsAt(const std::optional<SteeringReading>& steering) const;
   void FollowMajorities();
   bool Overrule(std::span<const std::span<SensorMonitor>> voters, size_t minority);
   bool IsSlipPossible(const WheelGeometry& wheel, double rolling_speed, double slip_sigma) const;
@@ -78,8 +93,10 @@ class VelocityFilter {
   SensorMonitor ground_speed_;
   SensorMonitor gnss_;
   std::array<SensorMonitor, 4> wheels_;
+  InnovationStatistics innovations_;
   int64_t utime_ = 0;
-  Wheels torque_{};
+  double step_ = 0.0;  // s, of the last prediction
+  std::optional<Wheels> torque_;
   bool is_moving_ = false;
 };
 

@@ -95,8 +95,8 @@ std::vector<SourceSpec> WatchedDaemons() {
   // boundary_estimator hears nothing but LOCAL_MAP, and sends no heartbeats in data time while
   // there is none.
   return {Daemon("velocity_estimator"), Daemon("local_mapper"),
-          Daemon("boundary_estimator", {channels::kLocalMap.name}), Daemon("path_tracker"),
-          Daemon("mission_manager")};
+          Daemon("global_mapper"),      Daemon("boundary_estimator", {channels::kLocalMap.name}),
+          Daemon("path_tracker"),       Daemon("mission_manager")};
 }
 
 size_t WatchedChannelIndex(std::string_view name) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -9,27 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.hpp"
 #include "tools/race/race.hpp"
 #include "tools/report/run_log.hpp"
 
 namespace hairpin {
-
-/// A folder of its own under the system's temporary one, gone with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "hairpin_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder " + name);
-    path_ = name;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string File(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Where recordings of real cars and competition tracks lie; they are not in the project.
 inline std::filesystem::path DataFolder() {
@@ -51,7 +33,8 @@ struct RaceRun {
 /// One race in this process, as `tools/drive --in-process` runs it; `can`: with --can.
 inline RaceRun RunInProcess(const std::string& track_file, uint64_t seed,
                             const std::vector<std::string>& faults = {},
-                            const std::vector<std::string>& overrides = {}, bool can = false) {
+                            const std::vector<std::string>& overrides = {},
+                            SensorLevel level = SensorLevel::kCones, bool can = false) {
   const TemporaryFolder folder;
   RaceOptions options;
   options.track = LoadTrack(track_file);
@@ -60,9 +43,10 @@ inline RaceRun RunInProcess(const std::string& track_file, uint64_t seed,
   options.can = can;
   options.speed = 0.0;
   for (const std::string& text : faults)
-    options.faults.push_back(ParseFault(text, FaultSources(can)));
+    options.faults.push_back(ParseFault(text, FaultSources(level, can)));
   options.stack.config_dir = std::string(HAIRPIN_SOURCE_DIR) + "/config";
   options.stack.overrides = overrides;
+  options.stack.level = level;
   options.log_file = folder.File("log.lcmlog");
   const int never = 0;
   RaceRun run;

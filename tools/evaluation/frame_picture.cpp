@@ -2,69 +2,14 @@
 
 #include <sstream>
 
+#include "tools/evaluation/canvas.hpp"
+
 namespace hairpin {
 namespace {
 
 constexpr double kRadius = 25.0;  // m about the car
 constexpr double kPixelsPerMetre = 20.0;
 constexpr double kDrivenAhead = 30.0;  // m
-
-const char* PaintOf(ConeColour colour) {
-  switch (colour) {
-    case ConeColour::kBlue:
-      return "#1f5fd0";
-    case ConeColour::kYellow:
-      return "#e0b000";
-    case ConeColour::kOrange:
-    case ConeColour::kOrangeLarge:
-      return "#f07000";
-    case ConeColour::kUnknown:
-      break;
-  }
-  return "#808080";
-}
-
-/// Metres about the car, y up, onto the picture.
-class Canvas {
- public:
-  explicit Canvas(const Eigen::Vector2d& centre) : centre_(centre) {
-    const double size = 2.0 * kRadius * kPixelsPerMetre;
-    svg_ << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << size << "\" height=\"" << size
-         << "\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
-  }
-
-  void Line(const Polyline& line, const char* style) {
-    svg_ << "<polyline fill=\"none\" " << style << " points=\"";
-    for (const Eigen::Vector2d& point : line) svg_ << X(point) << ',' << Y(point) << ' ';
-    svg_ << "\"/>\n";
-  }
-
-  void Dot(const Eigen::Vector2d& point, double radius_px, const char* paint) {
-    svg_ << "<circle cx=\"" << X(point) << "\" cy=\"" << Y(point) << "\" r=\"" << radius_px
-         << "\" fill=\"" << paint << "\"/>\n";
-  }
-
-  void Text(double line, const std::string& text) {
-    svg_ << "<text x=\"10\" y=\"" << 20.0 * line << "\" font-family=\"monospace\" font-size=\"14\">"
-         << text << "</text>\n";
-  }
-
-  std::string Finish() {
-    svg_ << "</svg>\n";
-    return svg_.str();
-  }
-
- private:
-  double X(const Eigen::Vector2d& point) const {
-    return kPixelsPerMetre * (kRadius + point.x() - centre_.x());
-  }
-  double Y(const Eigen::Vector2d& point) const {
-    return kPixelsPerMetre * (kRadius - point.y() + centre_.y());
-  }
-
-  Eigen::Vector2d centre_;
-  std::ostringstream svg_;
-};
 
 void DrawTrack(Canvas& canvas, const TrackEstimate& estimate) {
   for (const auto& [side, style] :
@@ -100,7 +45,7 @@ std::string DrawFrame(const std::vector<RecordedFrame>& run, size_t frame,
                       const PlannerFrame& result) {
   const RecordedTrack track(run);
   const Pose2& T_map_base = run[frame].T_map_base;
-  Canvas canvas(T_map_base.position());
+  Canvas canvas(T_map_base.position(), kRadius, kPixelsPerMetre);
   for (const Segment& segment : track.boundaries())
     canvas.Line({segment.from, segment.to}, "stroke=\"#d0d0d0\" stroke-width=\"4\"");
   canvas.Line(track.DrivenAhead(frame, kDrivenAhead), "stroke=\"#c080ff\" stroke-width=\"1\"");

@@ -15,7 +15,11 @@ int Fail(const std::exception& error, int code) {
 int Main(int argc, char** argv) {
   CLI::App app("Figures from recordings, for people or (--json) for machines", "hairpin-evaluate");
   app.require_subcommand(1);
+  AddLidarCommand(app);
+  AddMapCommand(app);
   AddPlannerCommand(app);
+  AddSlamCommand(app);
+  AddVelocityCommand(app);
   try {
     app.parse(argc, argv);  // runs the subcommand
     return 0;

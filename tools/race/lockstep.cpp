@@ -9,15 +9,28 @@ constexpr int64_t kPatience = 250'000;     // us of wall time
 constexpr int64_t kStatusPeriod = 20'000;  // us of data time between two PIPELINE_STATUS
 constexpr int kWaitMs = 10;
 constexpr int kShortWaitMs = 1;  // where what is waited for does not wake us
+// A scan is out when the next packet after its end has been handled, and its cones then; with a
+// LiDAR dead, the detector waits for it before it goes on with the other.
+constexpr int64_t kScanAge = 115'000;        // us: a revolution, and a tick and a packet
+constexpr int64_t kConesAge = kScanAge;      // with both LiDARs
+constexpr int64_t kConesAgeOfOne = 180'000;  // with one
 
 }  // namespace
 
-Lockstep::Lockstep(Transport& transport) : transport_(transport), bus_(transport, "lockstep", 1) {
+Lockstep::Lockstep(Transport& transport, SensorLevel level)
+    : transport_(transport), bus_(transport, "lockstep", 1) {
   Listen(channels::kVelocity);
   Listen(channels::kDriveCommand);
   Listen(channels::kAsState);
   Listen(channels::kLocalMap);
+  Listen(channels::kGlobalMap);
   Listen(channels::kTrack);
+  const bool raw = level == SensorLevel::kRaw;
+  if (raw) {
+    Listen(channels::kLidarFront);
+    Listen(channels::kLidarTop);
+    answers_[channels::kConesLidar.name];
+  }
   answers_[channels::kPipelineStatus.name];
   bus_.Subscribe(channels::kPipelineStatus, [this](const pipeline_status_t& message) {
     mode_ = static_cast<MapMode>(message.map_mode);
@@ -27,8 +40,10 @@ Lockstep::Lockstep(Transport& transport) : transport_(transport), bus_(transport
                  [this](const vehicle_t& message) { vehicle_utime_ = message.utime; });
   bus_.Subscribe(channels::kConesFusion,
                  [this](const cones_t& message) { observed_[Pipeline::kFusion] = message.utime; });
-  bus_.Subscribe(channels::kConesLidar,
-                 [this](const cones_t& message) { observed_[Pipeline::kLidar] = message.utime; });
+  bus_.Subscribe(channels::kConesLidar, [this, raw](const cones_t& message) {
+    observed_[Pipeline::kLidar] = message.utime;
+    if (raw) Heard(channels::kConesLidar.name, message.utime);
+  });
   bus_.Subscribe(channels::kConesCamera,
                  [this](const cones_t& message) { observed_[Pipeline::kCamera] = message.utime; });
 }
@@ -49,7 +64,17 @@ void Lockstep::Heard(const std::string& channel, int64_t utime) {
 int64_t Lockstep::Wanted(const std::string& channel, int64_t utime) const {
   if (channel == channels::kPipelineStatus.name) return utime - kStatusPeriod;
   if (channel == channels::kAsState.name) return vehicle_utime_;
-  if (channel != channels::kLocalMap.name && channel != channels::kTrack.name) return utime;
+  const std::string front = channels::kLidarFront.name;
+  const std::string top = channels::kLidarTop.name;
+  if (channel == front || channel == top) return utime - kScanAge;
+  if (channel == channels::kConesLidar.name) {
+    const bool both = !answers_.at(front).silent && !answers_.at(top).silent;
+    return utime - (both ? kConesAge : kConesAgeOfOne);
+  }
+  const bool answers_cones = channel == channels::kLocalMap.name ||
+                             channel == channels::kGlobalMap.name ||
+                             channel == channels::kTrack.name;
+  if (!answers_cones) return utime;
   int64_t wanted = 0;
   for (const auto& [pipeline, observed] : observed_) {
     if (Uses(mode_, pipeline)) wanted = std::max(wanted, observed);

@@ -9,19 +9,20 @@
 #include "common/bus.hpp"
 #include "common/clock.hpp"
 #include "common/map_mode.hpp"
+#include "tools/race/stack.hpp"
 
 namespace hairpin {
 
 /// Makes simulated time wait for the stack's answers, so that the outcome of a lap does not depend
 /// on how fast the machine is. After each tick it waits for VELOCITY, DRIVE_COMMAND, AS_STATE and
-/// PIPELINE_STATUS of that tick, and for LOCAL_MAP and TRACK of the newest observations that the
-/// map's mode uses.
+/// PIPELINE_STATUS of that tick, and for LOCAL_MAP, GLOBAL_MAP and TRACK of the newest observations
+/// that the map's mode uses. Where there are LiDARs, for each scan and its cones.
 ///
 /// A channel that has not answered within 250 ms of wall time counts as silent and is not waited
 /// for until it speaks again: a dead daemon costs one such wait, not one a tick.
 class Lockstep {
  public:
-  explicit Lockstep(Transport& transport);
+  Lockstep(Transport& transport, SensorLevel level);
 
   /// Handles messages until the stack has answered the tick of time `utime`, and `also()` is true:
   /// an answer that comes another way, and is given up in the same manner.

@@ -60,7 +60,7 @@ class FaultInjector {
     });
   }
 
-  void Apply(int64_t utime, Simulator& simulator, Stack& stack) {
+  void Apply(int64_t utime, Simulator& simulator, LidarRig* lidars, Stack& stack) {
     if (!go_utime_) return;
     const double since_go = SecondsBetween(*go_utime_, utime);
     std::map<std::string, bool> off;
@@ -69,13 +69,21 @@ class FaultInjector {
     for (const auto& [source, is_off] : off) {
       if (is_off == off_[source]) continue;
       off_[source] = is_off;
-      const bool is_daemon = std::find(daemons_.begin(), daemons_.end(), source) != daemons_.end();
-      if (is_daemon) stack.SetDaemon(source, !is_off);
-      if (!is_daemon) simulator.SetSource(source, !is_off);
+      if (Contains(daemons_, source)) {
+        stack.SetDaemon(source, !is_off);
+      } else if (lidars != nullptr && Contains(LidarRig::Sources(), source)) {
+        lidars->SetSource(source, !is_off);
+      } else {
+        simulator.SetSource(source, !is_off);
+      }
     }
   }
 
  private:
+  static bool Contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  }
+
   const std::vector<Fault>& faults_;
   std::vector<std::string> daemons_;
   Bus bus_;
@@ -83,7 +91,7 @@ class FaultInjector {
   std::map<std::string, bool> off_;
 };
 
-void AwaitDaemons(Transport& transport, const std::vector<std::string>& daemons, Stack& stack,
+void AwaitDaemons(const std::vector<std::string>& daemons, Transport& transport, Stack& stack,
                   const volatile int& stop) {
   std::set<std::string> missing(daemons.begin(), daemons.end());
   Bus bus(transport, "roll_call", 1);
@@ -124,6 +132,24 @@ StackOptions StackWith(const RaceOptions& options, MemoryCanBus& memory) {
   return stack;
 }
 
+bool IsPipeline(const std::string& source) {
+  return source == "fusion" || source == "lidar" || source == "camera";
+}
+
+/// The LiDARs, plugged into the stack; the simulator's own pipelines say nothing then.
+std::unique_ptr<LidarRig> MakeLidars(const LidarRigParams& params, const Car& car,
+                                     const RaceOptions& options, Simulator& simulator,
+                                     Stack& stack) {
+  for (const std::string& source : Simulator::Sources()) {
+    if (IsPipeline(source)) simulator.SetSource(source, false);
+  }
+  return std::make_unique<LidarRig>(
+      params, car, options.track, options.seed, Simulator::kFirstUtime,
+      [&](const std::string& sensor, LidarRig::Port port, std::span<const uint8_t> packet) {
+        stack.SendPacket(sensor, port == LidarRig::Port::kPosition, packet, simulator.utime());
+      });
+}
+
 struct SimulatorConfig {
   Car car;
   SimulatorParams params;
@@ -138,9 +164,14 @@ SimulatorConfig LoadSimulator(const StackOptions& options) {
 
 }  // namespace
 
-std::vector<std::string> FaultSources(bool can) {
+std::vector<std::string> FaultSources(SensorLevel level, bool can) {
   std::vector<std::string> sources = Simulator::Sources();
-  sources.insert(sources.end(), StackDaemons().begin(), StackDaemons().end());
+  if (level == SensorLevel::kRaw) {
+    std::erase_if(sources, IsPipeline);
+    sources.insert(sources.end(), LidarRig::Sources().begin(), LidarRig::Sources().end());
+  }
+  const std::vector<std::string>& daemons = StackDaemons(level);
+  sources.insert(sources.end(), daemons.begin(), daemons.end());
   if (can) sources.push_back(kCanGateway);
   return sources;
 }
@@ -148,7 +179,8 @@ std::vector<std::string> FaultSources(bool can) {
 RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
   const SimulatorConfig config = LoadSimulator(options.stack);
   Transport transport(options.in_process ? "memq://" : kDefaultLcmUrl);
-  Recorder recorder(transport, options.log_file);
+  const SensorLevel level = options.stack.level;
+  Recorder recorder(transport, options.log_file, options.log_scans);
   Progress progress(transport);
   const MonotonicClock clock;
   MemoryCanBus memory;
@@ -166,21 +198,27 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
     } else {
       stack = std::make_unique<ProcessStack>(stack_options, transport.url());
     }
-    AwaitDaemons(transport, daemons, *stack, stop);
-    lockstep.emplace(transport);
+    AwaitDaemons(daemons, transport, *stack, stop);
+    lockstep.emplace(transport, level);
   }
   Bus bus(transport, "simulator", 1);
   Simulator simulator(config.params, config.car, options.track, options.seed, bus, can.get());
+  std::unique_ptr<LidarRig> lidars;
+  if (level == SensorLevel::kRaw)
+    lidars = MakeLidars(config.params.lidars, config.car, options, simulator, *stack);
   const auto await_can = [&simulator] { return simulator.AwaitCan(); };
 
   const int64_t start_wall = clock.NowMicros();
   const int64_t start_utime = simulator.utime();
   Pacer pacer;
   while (!simulator.done() && stop == 0) {
-    faults.Apply(simulator.utime(), simulator, *stack);
+    faults.Apply(simulator.utime(), simulator, lidars.get(), *stack);
     const int64_t before = simulator.utime();
     recorder.SetTime(before);
     simulator.Step();
+    if (lidars) {
+      lidars->Advance(simulator.utime(), simulator.vehicle(), simulator.standing_cones());
+    }
     if (lockstep) {
       lockstep->Await(before, await_can);
     } else {

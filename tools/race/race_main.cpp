@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "tools/race/race.hpp"
 #include "tools/race/summary.hpp"
@@ -19,10 +20,14 @@ volatile std::sig_atomic_t stop_requested = 0;
 struct Arguments {
   std::string track = "default";
   uint64_t seed = 1;
-  int laps = 1;
+  std::string mission = "autocross";
+  std::string map;  // file, for the trackdrive
+  int laps = 0;     // 0: as many as the mission has
   bool in_process = false;
   bool can = false;
   bool attach = false;
+  std::string sensors = "cones";
+  bool log_scans = false;
   double speed = -1.0;  // not given
   double speed_cap = 0.0;
   std::vector<std::string> faults;
@@ -39,13 +44,27 @@ void Define(CLI::App& app, Arguments& arguments) {
                  "track file (own YAML, PacSim, FSSIM, EUFS CSV), or a name in config/tracks")
       ->capture_default_str();
   app.add_option("--seed", arguments.seed, "seed of all noise")->capture_default_str();
-  app.add_option("--laps", arguments.laps, "laps to drive")
-      ->check(CLI::Range(1, 50))
+  app.add_option("--mission", arguments.mission,
+                 "autocross: drive on sight, and map; trackdrive: race on a map")
+      ->check(CLI::IsMember({"autocross", "trackdrive"}))
       ->capture_default_str();
+  app.add_option("--sensors", arguments.sensors,
+                 "what the simulator feeds: `cones`, as pipelines report them, or `raw`: both "
+                 "LiDARs' packets, to lidar_driver and lidar_cone_detector")
+      ->check(CLI::IsMember({"cones", "raw"}))
+      ->capture_default_str();
+  app.add_flag("--log-scans", arguments.log_scans,
+               "with raw sensors: LIDAR_FRONT and LIDAR_TOP into the log, 12 MB a second");
+  app.add_option(
+         "--map", arguments.map,
+         "map of the track, from an autocross (default: a lap of autocross is driven first)")
+      ->check(CLI::ExistingFile);
+  app.add_option("--laps", arguments.laps, "laps to drive (default: autocross 1, trackdrive 10)")
+      ->check(CLI::Range(1, 50));
   app.add_option(
          "--fault", arguments.faults,
          "`SOURCE off at T s [for D s]`, counted from Go; SOURCE is a pipeline (fusion, lidar, "
-         "camera), a sensor or a daemon (repeatable)")
+         "camera; with raw sensors lidar_front, lidar_top), a sensor or a daemon (repeatable)")
       ->allow_extra_args(false);
   app.add_option("--speed-cap", arguments.speed_cap, "drive no faster than this [m/s]")
       ->check(CLI::Range(1.0, 40.0));
@@ -59,7 +78,8 @@ void Define(CLI::App& app, Arguments& arguments) {
                "the car speaks CAN, and can_gateway runs between it and the rest");
   app.add_flag("--attach", arguments.attach,
                "drive with the daemons that run here already (systemd's) and their own configs")
-      ->excludes("--in-process");
+      ->excludes("--in-process")
+      ->excludes("--sensors");
   app.add_option("--set", arguments.overrides,
                  "DAEMON.KEY=VALUE in place of a config file's value (repeatable)")
       ->allow_extra_args(false);
@@ -84,52 +104,115 @@ std::string TrackFile(const Arguments& arguments) {
   throw TrackError(arguments.track + ": no such file, nor " + named);
 }
 
-RaceOptions ToOptions(const Arguments& arguments) {
+/// One start of the car.
+struct Leg {
+  bool trackdrive = false;
+  int laps = 1;
+  uint64_t seed = 1;
+  std::string map;  // to race on; empty: none
+  std::string out;
+  std::vector<std::string> faults;
+};
+
+std::vector<Leg> LegsOf(const Arguments& arguments) {
+  Leg leg{false, arguments.laps, arguments.seed, "", arguments.out, arguments.faults};
+  leg.trackdrive = arguments.mission == "trackdrive";
+  if (leg.laps == 0) leg.laps = leg.trackdrive ? 10 : 1;
+  leg.map = leg.trackdrive ? arguments.map : "";
+  if (!leg.trackdrive || !leg.map.empty()) return {leg};
+  const Leg first{false, 1, arguments.seed, "", arguments.out + "/autocross", {}};
+  leg.seed = arguments.seed + 1;  // another start: the sensors' errors are drawn anew
+  leg.map = first.out + "/map.yaml";
+  leg.out = arguments.out + "/trackdrive";
+  return {first, leg};
+}
+
+std::vector<std::string> LegOverrides(const Leg& leg, double speed_cap) {
+  const std::string mission = leg.trackdrive ? "trackdrive" : "autocross";
+  int32_t number = vehicle_t::MISSION_AUTOCROSS;
+  if (leg.trackdrive) number = vehicle_t::MISSION_TRACKDRIVE;
+  std::vector<std::string> overrides{
+      "simulator.referee.laps=" + std::to_string(leg.laps),
+      "simulator.race_control.mission=" + std::to_string(number),
+      "mission_manager." + mission + "_laps=" + std::to_string(leg.laps),
+      "global_mapper.files.known_map=" + (leg.map.empty() ? "none" : leg.map)};
+  if (speed_cap > 0.0) {
+    const std::string cap = std::to_string(speed_cap);
+    overrides.push_back("path_tracker.max_speed_mps=" + cap);
+    overrides.push_back("path_tracker.race_max_speed_mps=" + cap);
+  }
+  return overrides;
+}
+
+RaceOptions ToOptions(const Arguments& arguments, const Leg& leg) {
   RaceOptions options;
   options.track = LoadTrack(TrackFile(arguments));
-  options.seed = arguments.seed;
+  options.seed = leg.seed;
   options.in_process = arguments.in_process;
   options.attach = arguments.attach;
   options.speed = arguments.speed >= 0.0 ? arguments.speed : arguments.in_process ? 0.0 : 1.0;
   options.can = arguments.can;
+  options.log_scans = arguments.log_scans;
+  const SensorLevel level = arguments.sensors == "raw" ? SensorLevel::kRaw : SensorLevel::kCones;
   const std::vector<std::string> sources =
-      arguments.attach ? Simulator::Sources() : FaultSources(options.can);
-  for (const std::string& text : arguments.faults)
-    options.faults.push_back(ParseFault(text, sources));
-  options.stack = {arguments.config_dir, arguments.program_dir, arguments.out, arguments.overrides};
-  options.stack.overrides.push_back("simulator.referee.laps=" + std::to_string(arguments.laps));
-  options.stack.overrides.push_back("mission_manager.autocross_laps=" +
-                                    std::to_string(arguments.laps));
-  if (arguments.speed_cap > 0.0) {
-    options.stack.overrides.push_back("path_tracker.max_speed_mps=" +
-                                      std::to_string(arguments.speed_cap));
-  }
-  options.log_file = arguments.out + "/log.lcmlog";
+      arguments.attach ? Simulator::Sources() : FaultSources(level, options.can);
+  for (const std::string& text : leg.faults) options.faults.push_back(ParseFault(text, sources));
+  // The map of this run belongs to this run; --set may say otherwise.
+  std::vector<std::string> overrides{"global_mapper.files.directory=" + leg.out};
+  overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
+  options.stack = {arguments.config_dir, arguments.program_dir, leg.out, overrides, level};
+  for (const std::string& text : LegOverrides(leg, arguments.speed_cap))
+    options.stack.overrides.push_back(text);
+  options.log_file = leg.out + "/log.lcmlog";
   return options;
 }
 
-int Drive(const Arguments& arguments) {
-  const RaceOptions options = ToOptions(arguments);
-  std::filesystem::create_directories(arguments.out);
-  std::cerr << options.track.name << ", seed " << options.seed << ": writing " << arguments.out
-            << '\n';
-  const RaceOutcome outcome = RunRace(options, stop_requested);
-  if (outcome.interrupted) {
+struct LegResult {
+  RaceOutcome outcome;
+  RunLog log;
+  nlohmann::json report;
+};
+
+/// Empty where it was interrupted.
+std::optional<LegResult> RunLeg(const Arguments& arguments, const Leg& leg) {
+  const RaceOptions options = ToOptions(arguments, leg);
+  std::filesystem::create_directories(leg.out);
+  std::cerr << options.track.name << ", seed " << options.seed << ": writing " << leg.out << '\n';
+  LegResult result;
+  result.outcome = RunRace(options, stop_requested);
+  if (result.outcome.interrupted) {
     std::cerr << "interrupted; the log so far is " << options.log_file << '\n';
-    return kExitFailure;
+    return std::nullopt;
   }
-  const RunLog log = LoadRunLog(options.log_file);
-  RunContext context = ToContext(options, outcome);
-  context.faults = arguments.faults;
-  nlohmann::json report = EvaluateRun(log, context);
-  report["answers_missed"] = outcome.answers_missed;
-  WriteReport(arguments.out, report, log);
+  result.log = LoadRunLog(options.log_file);
+  RunContext context = ToContext(options, result.outcome);
+  context.faults = leg.faults;
+  result.report = EvaluateRun(result.log, context);
+  result.report["answers_missed"] = result.outcome.answers_missed;
+  result.report["mission"] = leg.trackdrive ? "trackdrive" : "autocross";
+  WriteReport(leg.out, result.report, result.log);
+  return result;
+}
+
+int Drive(const Arguments& arguments) {
+  const std::vector<Leg> legs = LegsOf(arguments);
+  std::optional<LegResult> result = RunLeg(arguments, legs.front());
+  if (!result) return kExitFailure;
+  bool clean = IsClean(result->outcome.result);
+  if (legs.size() > 1 && result->outcome.result.finished) {
+    const nlohmann::json autocross = result->report;
+    result = RunLeg(arguments, legs.back());
+    if (!result) return kExitFailure;
+    clean = clean && IsClean(result->outcome.result);
+    AddAutocross(autocross, result->report);
+    WriteReport(arguments.out, result->report, result->log);
+  }
   if (arguments.json) {
-    std::cout << report.dump(2) << '\n';
+    std::cout << result->report.dump(2) << '\n';
   } else {
-    std::cout << Summary(report, arguments.out);
+    std::cout << Summary(result->report, arguments.out);
   }
-  return IsClean(outcome.result) ? 0 : kExitFailure;
+  return clean ? 0 : kExitFailure;
 }
 
 int Main(int argc, char** argv) {

@@ -16,6 +16,9 @@ const std::vector<Stage>& Stages() {
       channels::kConesFusion.name, channels::kConesLidar.name, channels::kConesCamera.name};
   static const std::vector<Stage> stages{
       {"velocity_estimator", {channels::kImu.name}, channels::kVelocity.name},
+      {"lidar_cone_detector",
+       {channels::kLidarFront.name, channels::kLidarTop.name},
+       channels::kConesLidar.name},
       {"local_mapper", cones, channels::kLocalMap.name},
       {"boundary_estimator", {channels::kLocalMap.name}, channels::kTrack.name},
       {"path_tracker", {channels::kVelocity.name}, channels::kDriveCommand.name},
@@ -34,7 +37,8 @@ int64_t UtimeOf(const uint8_t* data, size_t size) {
 
 }  // namespace
 
-Recorder::Recorder(Transport& transport, const std::string& log_file) : log_(log_file) {
+Recorder::Recorder(Transport& transport, const std::string& log_file, bool log_scans)
+    : log_(log_file), log_scans_(log_scans) {
   for (const Stage& stage : Stages()) latencies_ms_[stage.name];
   subscription_ =
       transport.Subscribe(".*", [this](const std::string& channel, const uint8_t* data,
@@ -43,7 +47,8 @@ Recorder::Recorder(Transport& transport, const std::string& log_file) : log_(log
 
 void Recorder::OnMessage(const std::string& channel, const uint8_t* data, size_t size) {
   if (channel == "LCM_SELF_TEST") return;  // LCM's own, at the start of a udpm provider
-  log_.Write(utime_, channel, data, size);
+  const bool is_scan = channel == channels::kLidarFront.name || channel == channels::kLidarTop.name;
+  if (!is_scan || log_scans_) log_.Write(utime_, channel, data, size);
   Measure(channel, UtimeOf(data, size));
 }
 

@@ -17,12 +17,13 @@ namespace hairpin {
 /// the same utime.
 class Recorder {
  public:
-  Recorder(Transport& transport, const std::string& log_file);
+  /// LiDAR scans go into the log only with `log_scans`: they are a hundred times all the rest.
+  Recorder(Transport& transport, const std::string& log_file, bool log_scans);
 
   void SetTime(int64_t utime) { utime_ = utime; }
-  /// Milliseconds of wall time by stage: "velocity_estimator", "local_mapper",
-  /// "boundary_estimator", "path_tracker", and "cones_to_track" for the last three pipeline stages
-  /// together.
+  /// Milliseconds of wall time by stage: "velocity_estimator", "lidar_cone_detector",
+  /// "local_mapper", "boundary_estimator", "path_tracker", and "cones_to_track" for the last three
+  /// pipeline stages together.
   const std::map<std::string, std::vector<double>>& latencies_ms() const { return latencies_ms_; }
   /// Flushes the log; throws std::runtime_error where it could not be written.
   void Close();
@@ -33,6 +34,7 @@ class Recorder {
 
   MonotonicClock clock_;
   LogWriter log_;
+  bool log_scans_;
   int64_t utime_ = 0;
   struct Heard {
     int64_t utime = 0;

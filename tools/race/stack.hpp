@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,23 @@
 
 namespace hairpin {
 
-/// The daemons that make the car drive, in the order of the data's flow.
-const std::vector<std::string>& StackDaemons();
+class LidarDriverNode;
+class PacketSender;
+
+/// Where the simulator enters the stack: cones as pipelines report them, or the LiDARs' packets.
+enum class SensorLevel { kCones, kRaw };
+
+/// The daemons that make the car drive, in the order of the data's flow, as they are called on the
+/// bus.
+const std::vector<std::string>& StackDaemons(SensorLevel level);
+
+/// What runs under a daemon's name on the bus: "lidar_driver_front" is `lidar_driver` with
+/// `--instance front`.
+struct DaemonProgram {
+  std::string program;
+  std::string instance;  // empty where the daemon runs once
+};
+DaemonProgram ProgramOf(const std::string& daemon);
 
 struct StackOptions {
   std::string config_dir;
@@ -21,6 +37,7 @@ struct StackOptions {
   std::string log_dir;      // for what they write to stderr
   /// "daemon.key=value" in place of what the daemon's config file says.
   std::vector<std::string> overrides;
+  SensorLevel level = SensorLevel::kCones;
   /// Daemons besides those: the drivers of what the simulator sends by the sensors' own protocols.
   std::vector<std::string> drivers{};
   /// The bus of can_gateway where all run in one process; must outlive the stack.
@@ -39,6 +56,10 @@ class Stack {
   /// Lets the daemons do what is to be done at simulated time `utime`; restarts what has died
   /// unasked.
   virtual void Tend(int64_t utime) = 0;
+  /// A LiDAR sends a packet at `utime`; `sensor` as LidarRig calls it, `position` where it is no
+  /// data packet. Dropped where nobody listens.
+  virtual void SendPacket(const std::string& sensor, bool position, std::span<const uint8_t> packet,
+                          int64_t utime) = 0;
 };
 
 /// All nodes in this process, on one shared transport. What a node throws comes out of the
@@ -49,6 +70,9 @@ class InProcessStack final : public Stack {
   InProcessStack(const StackOptions& options, Transport& transport);
   void SetDaemon(const std::string& name, bool on) override;
   void Tend(int64_t utime) override;
+  /// Hands it to the driver's node, as its socket would.
+  void SendPacket(const std::string& sensor, bool position, std::span<const uint8_t> packet,
+                  int64_t utime) override;
 
  private:
   struct Member {
@@ -59,6 +83,7 @@ class InProcessStack final : public Stack {
   StackOptions options_;
   Transport& transport_;
   ManualClock clock_;
+  std::map<std::string, LidarDriverNode*> drivers_;  // by sensor; those that run
   std::map<std::string, NodeFactory> factories_;
   std::map<std::string, Member> members_;
   int64_t starts_ = 0;
@@ -70,6 +95,7 @@ class AttachedStack final : public Stack {
   /// Throws std::logic_error: they are not ours to switch.
   void SetDaemon(const std::string& name, bool on) override;
   void Tend(int64_t) override {}
+  void SendPacket(const std::string&, bool, std::span<const uint8_t>, int64_t) override {}
 };
 
 /// Every daemon a process of its own, as on the car. A daemon that dies unasked is started again
@@ -83,6 +109,9 @@ class ProcessStack final : public Stack {
   /// Throws std::runtime_error, with the last lines that the daemon wrote, where one cannot be kept
   /// alive.
   void Tend(int64_t utime) override;
+  /// Over UDP on loopback, to the ports of lidar_driver.yaml.
+  void SendPacket(const std::string& sensor, bool position, std::span<const uint8_t> packet,
+                  int64_t utime) override;
 
  private:
   struct Process {
@@ -99,6 +128,7 @@ class ProcessStack final : public Stack {
   StackOptions options_;
   std::string lcm_url_;
   MonotonicClock clock_;
+  std::unique_ptr<PacketSender> sender_;  // none at the level of cones
   std::map<std::string, Process> processes_;
 };
 

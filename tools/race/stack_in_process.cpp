@@ -1,5 +1,8 @@
 #include "daemons/boundary_estimator/boundary_estimator_node.hpp"
 #include "daemons/can_gateway/can_gateway_node.hpp"
+#include "daemons/global_mapper/global_mapper_node.hpp"
+#include "daemons/lidar_cone_detector/lidar_cone_detector_node.hpp"
+#include "daemons/lidar_driver/lidar_driver_node.hpp"
 #include "daemons/local_mapper/local_mapper_node.hpp"
 #include "daemons/mission_manager/mission_manager_node.hpp"
 #include "daemons/path_tracker/path_tracker_node.hpp"
@@ -11,13 +14,49 @@
 namespace hairpin {
 namespace {
 
-std::map<std::string, NodeFactory> Factories(const Clock& clock, MemoryCanBus* can_bus) {
+using Drivers = std::map<std::string, LidarDriverNode*>;
+
+/// The driver without its sockets; listed in `drivers` while it lives.
+class ListedDriver {
+ public:
+  ListedDriver(const Config& config, const std::string& instance, Bus& bus, Drivers& drivers)
+      : node_(LoadLidarDriverParams(config, instance), instance, bus),
+        drivers_(drivers),
+        sensor_("lidar_" + instance) {
+    drivers_[sensor_] = &node_;
+  }
+  ~ListedDriver() { drivers_.erase(sensor_); }
+  ListedDriver(const ListedDriver&) = delete;
+  ListedDriver& operator=(const ListedDriver&) = delete;
+
+ private:
+  LidarDriverNode node_;
+  Drivers& drivers_;
+  std::string sensor_;
+};
+
+NodeFactory HostDriver(const std::string& instance, Drivers& drivers) {
+  return Host([instance, &drivers](Bus& bus, const Config& config) {
+    return ListedDriver(config, instance, bus, drivers);
+  });
+}
+
+std::map<std::string, NodeFactory> Factories(const Clock& clock, Drivers& drivers,
+                                             MemoryCanBus* can_bus) {
   return {
+      {"lidar_driver_front", HostDriver("front", drivers)},
+      {"lidar_driver_top", HostDriver("top", drivers)},
+      {"lidar_cone_detector", Host([](Bus& bus, const Config& config) {
+         return LidarConeDetectorNode(LoadLidarConeDetectorParams(config), bus);
+       })},
       {"velocity_estimator", Host([](Bus& bus, const Config& config) {
          return VelocityEstimatorNode(LoadVelocityEstimatorParams(config), bus);
        })},
       {"local_mapper", Host([](Bus& bus, const Config& config) {
          return LocalMapperNode(LoadLocalMapperParams(config), bus);
+       })},
+      {"global_mapper", Host([](Bus& bus, const Config& config) {
+         return GlobalMapperNode(LoadGlobalMapperConfig(config), bus);
        })},
       {"boundary_estimator", Host([](Bus& bus, const Config& config) {
          return BoundaryEstimatorNode(LoadBoundaryEstimatorParams(config), bus);
@@ -40,22 +79,35 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock, MemoryCanBus* c
 
 }  // namespace
 
-const std::vector<std::string>& StackDaemons() {
-  static const std::vector<std::string> names{"velocity_estimator", "watchdog",
-                                              "local_mapper",       "boundary_estimator",
-                                              "path_tracker",       "mission_manager"};
-  return names;
+const std::vector<std::string>& StackDaemons(SensorLevel level) {
+  static const std::vector<std::string> kCones{
+      "velocity_estimator", "watchdog",     "local_mapper",   "global_mapper",
+      "boundary_estimator", "path_tracker", "mission_manager"};
+  static const std::vector<std::string> kRaw = [] {
+    std::vector<std::string> names{"lidar_driver_front", "lidar_driver_top", "lidar_cone_detector"};
+    names.insert(names.end(), kCones.begin(), kCones.end());
+    return names;
+  }();
+  return level == SensorLevel::kRaw ? kRaw : kCones;
+}
+
+DaemonProgram ProgramOf(const std::string& daemon) {
+  const std::string driver = "lidar_driver";
+  if (daemon.starts_with(driver + "_")) return {driver, daemon.substr(driver.size() + 1)};
+  return {daemon, ""};
 }
 
 std::vector<std::string> DaemonsOf(const StackOptions& options) {
-  std::vector<std::string> names = StackDaemons();
+  std::vector<std::string> names = StackDaemons(options.level);
   names.insert(names.end(), options.drivers.begin(), options.drivers.end());
   return names;
 }
 
 InProcessStack::InProcessStack(const StackOptions& options, Transport& transport)
-    : options_(options), transport_(transport), factories_(Factories(clock_, options.can_bus)) {
-  for (const std::string& name : DaemonsOf(options)) SetDaemon(name, true);
+    : options_(options),
+      transport_(transport),
+      factories_(Factories(clock_, drivers_, options.can_bus)) {
+  for (const std::string& name : DaemonsOf(options_)) SetDaemon(name, true);
 }
 
 void InProcessStack::SetDaemon(const std::string& name, bool on) {
@@ -67,8 +119,9 @@ void InProcessStack::SetDaemon(const std::string& name, bool on) {
     return;
   }
   try {
+    const std::string program = ProgramOf(name).program;
     const Config config =
-        Config::Load(options_.config_dir, name, OverridesOf(name, options_.overrides));
+        Config::Load(options_.config_dir, program, OverridesOf(program, options_.overrides));
     Member member;
     member.bus = std::make_unique<Bus>(transport_, name, ++starts_);
     member.heartbeat = std::make_unique<Heartbeat>(*member.bus);
@@ -85,6 +138,12 @@ void InProcessStack::Tend(int64_t utime) {
     if (const auto member = members_.find(name); member != members_.end())
       member->second.node->Poll();
   }
+}
+
+void InProcessStack::SendPacket(const std::string& sensor, bool, std::span<const uint8_t> packet,
+                                int64_t utime) {
+  const auto driver = drivers_.find(sensor);
+  if (driver != drivers_.end()) driver->second->OnPacket({packet, utime, std::nullopt});
 }
 
 }  // namespace hairpin

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "tools/race/overrides.hpp"
+#include "tools/race/packet_sender.hpp"
 #include "tools/race/stack.hpp"
 
 namespace hairpin {
@@ -20,6 +21,9 @@ constexpr int64_t kRestartDelay = 100'000;      // us
 constexpr int64_t kRestartWindow = 10'000'000;  // us
 constexpr size_t kMaxRestarts = 5;              // in the window
 constexpr int kTailLines = 8;
+// The sensors' own addresses are not this machine's: their packets come from loopback.
+const char* const kLoopbackSensors[] = {"front.sensor_address=127.0.0.1",
+                                        "top.sensor_address=127.0.0.1"};
 
 // Runs in the child: exec replaces it, or it exits.
 [[noreturn]] void Exec(const std::vector<std::string>& words, const std::string& log_file) {
@@ -54,6 +58,11 @@ void AttachedStack::SetDaemon(const std::string& name, bool) {
 
 ProcessStack::ProcessStack(const StackOptions& options, const std::string& lcm_url)
     : options_(options), lcm_url_(lcm_url) {
+  if (options.level == SensorLevel::kRaw) {
+    const std::string program = "lidar_driver";
+    sender_ = std::make_unique<PacketSender>(
+        Config::Load(options.config_dir, program, OverridesOf(program, options.overrides)));
+  }
   for (const std::string& name : DaemonsOf(options)) Start(name, processes_[name]);
 }
 
@@ -67,9 +76,16 @@ ProcessStack::~ProcessStack() {
 }
 
 void ProcessStack::Start(const std::string& name, Process& process) {
-  std::vector<std::string> words{options_.program_dir + "/" + name, "--config-dir",
+  const DaemonProgram daemon = ProgramOf(name);
+  std::vector<std::string> words{options_.program_dir + "/" + daemon.program, "--config-dir",
                                  options_.config_dir, "--lcm-url", lcm_url_};
-  for (const std::string& assignment : OverridesOf(name, options_.overrides)) {
+  std::vector<std::string> overrides = OverridesOf(daemon.program, options_.overrides);
+  if (!daemon.instance.empty()) {
+    words.push_back("--instance");
+    words.push_back(daemon.instance);
+    overrides.insert(overrides.end(), std::begin(kLoopbackSensors), std::end(kLoopbackSensors));
+  }
+  for (const std::string& assignment : overrides) {
     words.push_back("--set");
     words.push_back(assignment);
   }
@@ -97,6 +113,11 @@ void ProcessStack::Tend(int64_t) {
     if (process.pid == 0 && process.wanted && clock_.NowMicros() >= process.restart_at)
       Start(name, process);
   }
+}
+
+void ProcessStack::SendPacket(const std::string& sensor, bool position,
+                              std::span<const uint8_t> packet, int64_t) {
+  if (sender_) sender_->Send(sensor, position, packet);
 }
 
 void ProcessStack::Reap(const std::string& name, Process& process) {

@@ -3,6 +3,7 @@
 #include <ctime>
 #include <filesystem>
 #include <iomanip>
+#include <numeric>
 #include <sstream>
 
 #include "common/daemon.hpp"
@@ -26,6 +27,24 @@ double Worst(const nlohmann::json& percents) {
   return worst;
 }
 
+// Of a trackdrive: each lap, and the autocross before it.
+std::string LapLines(const nlohmann::json& report) {
+  const auto& times = report.at("lap").at("lap_times_s");
+  std::string text;
+  if (times.size() > 1) {
+    text += "  laps       ";
+    for (const auto& time : times) text += " " + Figure(time, 2, "");
+    text += " s\n";
+  }
+  if (report.contains("autocross")) {
+    const auto& lap = report.at("autocross").at("lap");
+    text += "  autocross   " + Figure(lap.at("time_s"), 2, " s") + ", mean " +
+            Figure(lap.at("mean_speed_mps"), 1, " m/s") + "; the trackdrive is " +
+            Figure(report.at("speed_ratio"), 2, "") + " times as fast\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 bool IsClean(const RaceResult& result) {
@@ -45,9 +64,21 @@ RunContext ToContext(const RaceOptions& options, const RaceOutcome& outcome) {
   context.lap.max_speed_mps = outcome.result.max_speed_mps;
   context.lap.mean_speed_mps = outcome.result.mean_speed_mps;
   context.lap.lap_times_s = outcome.result.lap_times_s;
-  if (!outcome.result.lap_times_s.empty()) context.lap.time_s = outcome.result.lap_times_s.front();
+  if (const auto& laps = outcome.result.lap_times_s; !laps.empty()) {
+    context.lap.time_s = std::accumulate(laps.begin(), laps.end(), 0.0);
+  }
   context.lap.reason = outcome.result.reason;
   return context;
+}
+
+void AddAutocross(const nlohmann::json& autocross, nlohmann::json& trackdrive) {
+  trackdrive["autocross"] = {
+      {"lap", autocross.at("lap")}, {"map", autocross.at("map")}, {"seed", autocross.at("seed")}};
+  const auto& before = autocross.at("lap").at("mean_speed_mps");
+  const auto& after = trackdrive.at("lap").at("mean_speed_mps");
+  trackdrive["speed_ratio"] = before.is_number() && after.is_number() && before > 0.0
+                                  ? nlohmann::json(after.get<double>() / before.get<double>())
+                                  : nlohmann::json();
 }
 
 std::string Summary(const nlohmann::json& report, const std::string& out_dir) {
@@ -60,8 +91,8 @@ std::string Summary(const nlohmann::json& report, const std::string& out_dir) {
        << "  lap time    " << Figure(lap.at("time_s"), 2, " s") << ", mean "
        << Figure(lap.at("mean_speed_mps"), 1, " m/s") << ", max "
        << Figure(lap.at("max_speed_mps"), 1, " m/s") << '\n'
-       << "  penalties   " << lap.at("cones_hit") << " cones hit, " << lap.at("off_course")
-       << " times off course\n"
+       << LapLines(report) << "  penalties   " << lap.at("cones_hit") << " cones hit, "
+       << lap.at("off_course") << " times off course\n"
        << "  map         " << map.at("matched") << " cones matched, " << map.at("missed")
        << " missed, " << map.at("false") << " false, RMSE " << Figure(map.at("rmse_m"), 2, " m")
        << '\n'

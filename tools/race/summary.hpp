@@ -15,6 +15,10 @@ bool IsClean(const RaceResult& result);
 /// What the report needs to know beyond the log.
 RunContext ToContext(const RaceOptions& options, const RaceOutcome& outcome);
 
+/// Adds to a trackdrive's report the autocross that made its map: `autocross.{lap,map,seed}`, and
+/// `speed_ratio`, the trackdrive's mean speed over the autocross'.
+void AddAutocross(const nlohmann::json& autocross, nlohmann::json& trackdrive);
+
 /// The result as a person reads it at the end of a run, a few lines.
 std::string Summary(const nlohmann::json& report, const std::string& out_dir);
 

@@ -38,19 +38,29 @@ bool IsSame(const Pose2& a, const Pose2& b) {
          std::abs(WrapAngle(a.yaw - b.yaw)) < kIcpConverged;
 }
 
-struct MapCone {
-  Eigen::Vector2d position;  // local
-  ConeColour colour;
+ConeColour MostProbableOf(const float (&probability)[kNumConeColours]) {
+  ColourDistribution distribution;
+  std::copy(std::begin(probability), std::end(probability), distribution.begin());
+  return MostProbable(distribution);
+}
+
+Points TruePositions(const RunLog& log) {
+  Points truth;
+  for (const TrueCone& cone : TrueCones(*log.truth_track)) truth.push_back(cone.position);
+  return truth;
+}
+
+struct LocalMapCone {
+  MappedCone cone;  // local
   bool certain = false;
 };
 
-using EpochCones = std::map<int64_t, MapCone>;  // by id
+using EpochCones = std::map<int64_t, LocalMapCone>;  // by id
 
 void Remember(const local_map_t& local_map, EpochCones& cones) {
   for (const local_cone_t& cone : local_map.cones) {
-    MapCone& kept = cones[cone.id];
-    kept.position = {cone.x_m, cone.y_m};
-    kept.colour = ColourOf(cone);
+    LocalMapCone& kept = cones[cone.id];
+    kept.cone = {{cone.x_m, cone.y_m}, ColourOf(cone)};
     const auto existence = static_cast<double>(cone.existence);
     kept.certain = kept.certain || (existence >= kCertainExistence &&
                                     cone.num_observations >= kCertainObservations);
@@ -76,21 +86,24 @@ std::map<int64_t, Epoch> CollectEpochs(const RunLog& log) {
   return epochs;
 }
 
-void AddEpoch(int64_t id, const Epoch& epoch, const Points& truth, MapComparison& comparison) {
-  Points local;
-  for (const auto& [cone_id, cone] : epoch.cones) {
-    if (cone.certain) local.push_back(cone.position);
-  }
-  const Pose2 T_map_local = AlignByIcp(local, truth, *epoch.T_map_local);
-  comparison.T_map_local[id] = T_map_local;
-  for (const auto& [cone_id, cone] : epoch.cones) {
-    if (!cone.certain) continue;
-    const Eigen::Vector2d position_map = T_map_local * cone.position;
-    const Neighbour nearest = Nearest(truth, position_map);
-    ComparedCone compared{position_map, cone.colour, std::nullopt, nearest.distance};
+Points PositionsOf(const std::vector<MappedCone>& cones) {
+  Points points;
+  for (const MappedCone& cone : cones) points.push_back(cone.position);
+  return points;
+}
+
+/// Returns T_truth_map.
+Pose2 Add(const std::vector<MappedCone>& cones, const Points& truth, const Pose2& guess,
+          MapComparison& comparison) {
+  const Pose2 T_truth_map = AlignByIcp(PositionsOf(cones), truth, guess);
+  for (const MappedCone& cone : cones) {
+    const Eigen::Vector2d position = T_truth_map * cone.position;
+    const Neighbour nearest = Nearest(truth, position);
+    ComparedCone compared{position, cone.colour, std::nullopt, nearest.distance};
     if (nearest.distance <= kMatchGate) compared.match = nearest.index;
     comparison.cones.push_back(compared);
   }
+  return T_truth_map;
 }
 
 void Count(size_t num_true, MapComparison& comparison) {
@@ -115,11 +128,9 @@ void Count(size_t num_true, MapComparison& comparison) {
 
 }  // namespace
 
-ConeColour ColourOf(const local_cone_t& cone) {
-  ColourDistribution distribution;
-  std::copy(std::begin(cone.probability), std::end(cone.probability), distribution.begin());
-  return MostProbable(distribution);
-}
+ConeColour ColourOf(const local_cone_t& cone) { return MostProbableOf(cone.probability); }
+
+ConeColour ColourOf(const global_cone_t& cone) { return MostProbableOf(cone.probability); }
 
 std::optional<Pose2> AlignRigidly(const Points& from, const Points& to) {
   if (from.size() != to.size())
@@ -169,16 +180,50 @@ Pose2 AlignByIcp(const Points& from, const Points& to, const Pose2& guess) {
   return T_to_from;
 }
 
-std::optional<MapComparison> CompareMap(const RunLog& log) {
+MapComparison CompareCones(const std::vector<MappedCone>& cones, const Points& truth,
+                           const Pose2& guess) {
+  MapComparison comparison;
+  Add(cones, truth, guess, comparison);
+  Count(truth.size(), comparison);
+  return comparison;
+}
+
+std::optional<MapComparison> CompareLocalMaps(const RunLog& log) {
   if (!log.truth_track) return std::nullopt;
-  Points truth;
-  for (const TrueCone& cone : TrueCones(*log.truth_track)) truth.push_back(cone.position);
+  const Points truth = TruePositions(log);
   const auto epochs = CollectEpochs(log);
   if (epochs.empty()) return std::nullopt;
   MapComparison comparison;
-  for (const auto& [id, epoch] : epochs) AddEpoch(id, epoch, truth, comparison);
+  for (const auto& [id, epoch] : epochs) {
+    std::vector<MappedCone> certain;
+    for (const auto& [cone_id, cone] : epoch.cones) {
+      if (cone.certain) certain.push_back(cone.cone);
+    }
+    comparison.T_map_local[id] = Add(certain, truth, *epoch.T_map_local, comparison);
+  }
   Count(truth.size(), comparison);
   return comparison;
+}
+
+std::optional<MapComparison> CompareGlobalMap(const RunLog& log) {
+  if (!log.truth_track || log.global_maps.empty()) return std::nullopt;
+  const TrueTrajectory trajectory(log);
+  std::optional<Pose2> T_truth_map;  // by the true pose at the first map
+  for (const global_map_t& map : log.global_maps) {
+    const auto guess =
+        MomentaryMapFromLocal(trajectory, map.utime, {map.x_m, map.y_m, map.yaw_rad});
+    if (guess && !T_truth_map) T_truth_map = guess;
+  }
+  if (!T_truth_map) return std::nullopt;
+  std::vector<MappedCone> cones;
+  for (const global_cone_t& cone : log.global_maps.back().cones)
+    cones.push_back({{cone.x_m, cone.y_m}, ColourOf(cone)});
+  return CompareCones(cones, TruePositions(log), *T_truth_map);
+}
+
+std::optional<MapComparison> CompareMap(const RunLog& log) {
+  const auto global = CompareGlobalMap(log);
+  return global ? global : CompareLocalMaps(log);
 }
 
 nlohmann::json ToJson(const std::optional<MapComparison>& comparison) {

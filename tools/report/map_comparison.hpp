@@ -21,6 +21,7 @@ inline constexpr double kMatchGate = 1.0;
 
 /// Its most probable class.
 ConeColour ColourOf(const local_cone_t& cone);
+ConeColour ColourOf(const global_cone_t& cone);
 
 /// The rigid T_to_from that takes the points of `from` to their partners in `to` with the least sum
 /// of squares, in closed form [Arun 1987]. Empty for fewer than two pairs or where all coincide, so
@@ -44,7 +45,7 @@ struct ComparedCone {
 /// The map of the run against the true cones [paper IV-B, Table II].
 struct MapComparison {
   std::map<int64_t, Pose2>
-      T_map_local;  // by epoch of the mapper: each has a local frame of its own
+      T_map_local;  // of local maps, by epoch of the mapper: each has a local frame of its own
   std::vector<ComparedCone> cones;
   int matched = 0;  // true cones that a map cone lies at
   int missed = 0;   // true cones without one
@@ -55,9 +56,26 @@ struct MapComparison {
   std::optional<double> worst;  // of the same [m]
 };
 
+/// A cone of some map, in that map's frame.
+struct MappedCone {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  // m
+  ConeColour colour = ConeColour::kUnknown;
+};
+
+/// Cones of one map against true ones after one rigid alignment, found from `guess` (T_truth_map)
+/// on.
+MapComparison CompareCones(const std::vector<MappedCone>& cones,
+                           const std::vector<Eigen::Vector2d>& truth, const Pose2& guess);
+
+/// The run's last global map. Empty where no track, true pose or global map is known.
+std::optional<MapComparison> CompareGlobalMap(const RunLog& log);
+
 /// All cones of the run's local maps, in the state last published, under one rigid alignment for
 /// the whole run: the drift of dead reckoning stays in the figures. Empty where no track, true pose
 /// or local map is known.
+std::optional<MapComparison> CompareLocalMaps(const RunLog& log);
+
+/// The global map where the run has one, else the local maps.
 std::optional<MapComparison> CompareMap(const RunLog& log);
 
 /// The keys of `map`; null where there is nothing to compare.

@@ -111,6 +111,41 @@ std::string Tiles(const json& report) {
   return "<section class=\"tiles\">\n" + tiles + "</section>\n";
 }
 
+std::string LapSection(const json& report) {
+  const json& laps = report.at("lap").at("lap_times_s");
+  std::string rows;
+  const auto autocross = NumberAt(report, "/autocross/lap/time_s");
+  if (autocross) {
+    rows += Row({{"autocross, on sight", ""},
+                 {Figure(report, "/autocross/lap/time_s", 2), ""},
+                 {Figure(report, "/autocross/lap/mean_speed_mps", 2), ""},
+                 {Figure(report, "/autocross/lap/cones_hit", 0), ""}});
+  }
+  for (size_t i = 0; i < laps.size(); ++i)
+    rows += Row({{"lap " + std::to_string(i + 1), ""}, {Fixed(laps[i].get<double>(), 2), ""}});
+  rows += Row({{"all laps", ""},
+               {Figure(report, "/lap/time_s", 2), ""},
+               {Figure(report, "/lap/mean_speed_mps", 2), ""},
+               {Figure(report, "/lap/cones_hit", 0), ""}});
+  std::string notes;
+  if (report.contains("speed_ratio")) {
+    notes += "<p>Mean speed " + Figure(report, "/speed_ratio", 2) +
+             " times that of the autocross lap.</p>\n";
+  }
+  if (NumberAt(report, "/race_line/followed_percent")) {
+    notes += "<p>" + Figure(report, "/race_line/followed_percent", 1, "%") +
+             " of the commands followed the race line, which was left " +
+             Figure(report, "/race_line/times_left", 0) + " times; " +
+             Figure(report, "/race_line/lateral_error_m/rms", 3, "m") +
+             " RMS from it, localisation " +
+             Figure(report, "/race_line/localisation_m/rms", 3, "m") + ".</p>\n";
+  }
+  if (laps.size() < 2 && notes.empty()) return "";
+  return "<h2>Laps</h2>\n" +
+         Table({{"", ""}, {"time [s]", ""}, {"mean speed [m/s]", ""}, {"cones hit", ""}}, rows) +
+         notes;
+}
+
 std::string PathSection(const json& report) {
   const double full = paper::kLengthPercent.back();
   return "<h2>Paths</h2>\n<div class=\"pair\">" + DrawPathLengths(report).Inline() +
@@ -231,7 +266,7 @@ std::string ReportPage(const json& report, const RunLog& log) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
          title + "</title>\n<style>" + kPictureStyle + kPageStyle + "</style>\n</head>\n<body>\n" +
-         Verdict(report) + Tiles(report) + DrawTrack(log, report).Inline() +
+         Verdict(report) + Tiles(report) + DrawTrack(log, report).Inline() + LapSection(report) +
          DrawSpeed(log, report).Inline() + DrawLateralError(log, report).Inline() +
          PathSection(report) + MapSection(report) + ColourSection(report) + TimingSection(report) +
          ModeSection(report) + EstimateSection(report) + "</body>\n</html>\n";

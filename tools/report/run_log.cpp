@@ -63,9 +63,11 @@ std::map<std::string, Take> Takers(RunLog& log) {
   return {{channels::kTruth.name, Into(log.truth)},
           {channels::kTruthTrack.name, IntoFirst(log.truth_track)},
           {channels::kLocalMap.name, Into(log.local_maps)},
+          {channels::kGlobalMap.name, Into(log.global_maps)},
           {channels::kTrack.name, Into(log.tracks)},
           {channels::kPipelineStatus.name, Into(log.pipeline_status)},
           {channels::kAsState.name, Into(log.as_states)},
+          {channels::kRaceLine.name, Into(log.race_lines)},
           {channels::kDriveCommand.name, Into(log.drive_commands)},
           {channels::kVelocity.name, Into(log.velocities)},
           {channels::kConesFusion.name, Into(log.cones_fusion)},
@@ -76,9 +78,11 @@ std::map<std::string, Take> Takers(RunLog& log) {
 void SortAll(RunLog& log) {
   SortByTime(log.truth);
   SortByTime(log.local_maps);
+  SortByTime(log.global_maps);
   SortByTime(log.tracks);
   SortByTime(log.pipeline_status);
   SortByTime(log.as_states);
+  SortByTime(log.race_lines);
   SortByTime(log.drive_commands);
   SortByTime(log.velocities);
   SortByTime(log.cones_fusion);

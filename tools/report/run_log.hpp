@@ -15,9 +15,11 @@ struct RunLog {
   std::vector<truth_t> truth;
   std::optional<truth_track_t> truth_track;  // the first: the track does not change during a run
   std::vector<local_map_t> local_maps;
+  std::vector<global_map_t> global_maps;
   std::vector<track_t> tracks;
   std::vector<pipeline_status_t> pipeline_status;
   std::vector<as_state_t> as_states;
+  std::vector<race_line_t> race_lines;
   std::vector<drive_command_t> drive_commands;
   std::vector<velocity_t> velocities;
   std::vector<cones_t> cones_fusion;

@@ -7,6 +7,7 @@
 #include "tools/report/map_comparison.hpp"
 #include "tools/report/mode_changes.hpp"
 #include "tools/report/path_metrics.hpp"
+#include "tools/report/race_line_metrics.hpp"
 #include "tools/report/statistics.hpp"
 #include "tools/report/trajectory.hpp"
 
@@ -91,12 +92,14 @@ nlohmann::json EvaluateRun(const RunLog& log, const RunContext& context) {
           {"real_time_factor", OrNull(context.real_time_factor)},
           {"lap", ToJson(context.lap)},
           {"map", ToJson(CompareMap(log))},
+          {"local_map", ToJson(CompareLocalMaps(log))},
           {"path", ToJson(MeasurePaths(log))},
           {"modes", ToJson(ModeChanges(log), DrivingPhase(log).go_utime())},
           {"latency_ms", LatencyJson(context.latency_ms)},
           {"data_age_ms", DataAgeJson(log)},
           {"velocity", VelocityJson(log)},
           {"lateral_error_m", LateralErrorJson(log)},
+          {"race_line", RaceLineJson(log)},
           {"drift", ToJson(MeasureDrift(log))},
           {"false_positive_lifetime_s", FalsePositiveJson(FalsePositiveLifetimes(log))},
           {"colour", ToJson(MeasureColours(log))},

@@ -74,6 +74,7 @@ svg.picture .mapped.as_yellow { stroke: #d9a400; }
 svg.picture .mapped.as_orange, svg.picture .mapped.as_orange_large { stroke: #ff6a00; }
 svg.picture .mapped.as_unknown { stroke: var(--faint); }
 svg.picture .mapped.wrong { stroke: var(--bad); stroke-width: 2.2; }
+svg.picture .raceline { fill: none; stroke: #7df9ff; stroke-width: 1.2; }
 svg.picture .boundary { stroke-width: 1.3; }
 svg.picture .boundary.of_left { stroke: #5aa2ff; }
 svg.picture .boundary.of_right { stroke: #e6b800; }

@@ -4,6 +4,7 @@
 
 #include "tools/report/map_comparison.hpp"
 #include "tools/report/pictures.hpp"
+#include "tools/report/race_line_metrics.hpp"
 #include "tools/report/trajectory.hpp"
 #include "tools/report/true_track.hpp"
 #include "tools/report/view.hpp"
@@ -174,7 +175,7 @@ void DrawScaleBar(const View& view, double y, Svg& svg) {
   svg.Text({right, y - 8.0}, Fixed(length, 0) + " m", "faint end");
 }
 
-void DrawLegend(double y, Svg& svg) {
+void DrawLegend(double y, bool race_line, Svg& svg) {
   double x = kSide;
   const auto entry = [&](const char* text, auto&& symbol) {
     symbol(Eigen::Vector2d(x + 6.0, y - 4.0));
@@ -190,6 +191,11 @@ void DrawLegend(double y, Svg& svg) {
   });
   entry("boundaries and path as seen from here",
         [&](const auto& at) { svg.Circle(at, 4.0, "moment"); });
+  if (race_line) {
+    entry("race line", [&](const auto& at) {
+      svg.Line(at - Eigen::Vector2d(6.0, 0.0), at + Eigen::Vector2d(6.0, 0.0), "raceline");
+    });
+  }
   entry("cone hit", [&](const auto& at) { DrawHit(at, 5.0, svg); });
   entry("off course", [&](const auto& at) { DrawOffCourse(at, 7.0, svg); });
 }
@@ -216,12 +222,13 @@ Svg DrawTrack(const RunLog& log, const nlohmann::json& report) {
   DrawSpeedLegend(TopSpeed(log), svg);
   if (log.truth_track) DrawAsphalt(*log.truth_track, view, svg);
   DrawDrivenLine(log, view, svg);
+  for (const Points& stretch : RaceLineOfALap(log)) svg.Polyline(view(stretch), "raceline");
   DrawMoments(log, view, svg);
   DrawMappedCones(log, view, svg);
   if (log.truth_track) DrawTrueCones(*log.truth_track, view, svg);
   DrawMishaps(log, view, svg);
   DrawScaleBar(view, view.height() - 22.0, svg);
-  DrawLegend(view.height() - 18.0, svg);
+  DrawLegend(view.height() - 18.0, !log.race_lines.empty(), svg);
   return svg;
 }
 

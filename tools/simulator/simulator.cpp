@@ -6,6 +6,7 @@
 
 #include "common/clock.hpp"
 #include "tools/simulator/require.hpp"
+#include "tools/simulator/truth.hpp"
 
 namespace hairpin {
 namespace {
@@ -22,18 +23,6 @@ double PeriodSeconds(const Channel<M>& channel) {
 }
 
 int Ticks(double duration) { return static_cast<int>(std::lround(duration / Simulator::kTick)); }
-
-std::vector<truth_cone_t> ToMessage(const std::vector<TrackCone>& cones) {
-  std::vector<truth_cone_t> messages;
-  for (const TrackCone& cone : cones) {
-    truth_cone_t message{};
-    message.x_m = cone.position.x();
-    message.y_m = cone.position.y();
-    message.colour = static_cast<int32_t>(cone.colour);
-    messages.push_back(message);
-  }
-  return messages;
-}
 
 }  // namespace
 
@@ -165,19 +154,7 @@ void Simulator::PublishVehicle() {
 }
 
 void Simulator::PublishTruth() {
-  const VehicleState& state = vehicle_.state();
-  truth_t message{};
-  message.utime = utime_;
-  message.x_m = state.T_map_base.x;
-  message.y_m = state.T_map_base.y;
-  message.yaw_rad = state.T_map_base.yaw;
-  message.vx_mps = state.velocity.vx;
-  message.vy_mps = state.velocity.vy;
-  message.yaw_rate_radps = state.velocity.yaw_rate;
-  message.acceleration_mps2[0] = state.acceleration.x();
-  message.acceleration_mps2[1] = state.acceleration.y();
-  message.steering_angle_rad = state.steering_angle;
-  message.distance_m = state.distance;
+  truth_t message = TruthMessage(vehicle_.state(), utime_);
   message.lap = referee_.laps();
   message.cones_hit = result().cones_hit;
   message.off_course = result().off_course;
@@ -185,28 +162,7 @@ void Simulator::PublishTruth() {
 }
 
 void Simulator::PublishTruthTrack() {
-  truth_track_t message{};
-  message.utime = utime_;
-  message.name = track_.name;
-  message.seed = static_cast<int64_t>(seed_);
-  message.closed = track_.closed ? 1 : 0;
-  message.start_x_m = track_.start.x;
-  message.start_y_m = track_.start.y;
-  message.start_yaw_rad = track_.start.yaw;
-  const GateLine& finish = track_.finish_line;
-  const double line[4] = {finish.left.x(), finish.left.y(), finish.right.x(), finish.right.y()};
-  std::copy(std::begin(line), std::end(line), std::begin(message.finish_line_m));
-  message.left = ToMessage(track_.left);
-  message.right = ToMessage(track_.right);
-  std::vector<TrackCone> all;
-  for (const auto* cones : {&track_.left, &track_.right, &track_.others})
-    all.insert(all.end(), cones->begin(), cones->end());
-  for (const Eigen::Vector2d& thing : track_.clutter) all.push_back({thing, ConeColour::kUnknown});
-  message.cones = ToMessage(all);
-  message.num_left = static_cast<int32_t>(message.left.size());
-  message.num_right = static_cast<int32_t>(message.right.size());
-  message.num_cones = static_cast<int32_t>(message.cones.size());
-  bus_.Publish(channels::kTruthTrack, message);
+  bus_.Publish(channels::kTruthTrack, TruthTrackMessage(track_, utime_, seed_));
 }
 
 }  // namespace hairpin

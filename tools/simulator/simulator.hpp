@@ -46,6 +46,8 @@ class Simulator {
   bool done() const { return referee_.done(); }
   const RaceResult& result() const { return referee_.result(); }
   const VehicleState& vehicle() const { return vehicle_.state(); }
+  /// Cones not yet knocked down, in the track's order: left, right, others.
+  const std::vector<TrackCone>& standing_cones() const { return referee_.standing_cones(); }
   const Actuators& actuators() const { return actuators_; }
 
   /// True once a gateway has answered this tick's frames by CAN, with a command and a state. To be

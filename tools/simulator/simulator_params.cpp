@@ -3,6 +3,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "tools/simulator/lidar/lidar_params.hpp"
+
 namespace hairpin {
 namespace {
 
@@ -151,6 +153,7 @@ SimulatorParams LoadSimulatorParams(const Config& config) {
   params.fusion = LoadConeSensor(cones.Section("fusion"));
   params.lidar = LoadConeSensor(cones.Section("lidar"));
   params.camera = LoadConeSensor(cones.Section("camera"));
+  params.lidars = LoadLidarRigParams(config);
   params.referee = LoadReferee(config.Section("referee"));
   params.race_control = LoadRaceControl(config.Section("race_control"));
   config.Finish();

@@ -3,6 +3,7 @@
 #include "common/config.hpp"
 #include "tools/simulator/actuators.hpp"
 #include "tools/simulator/cone_sensor.hpp"
+#include "tools/simulator/lidar/lidar_rig.hpp"
 #include "tools/simulator/motion_sensors.hpp"
 #include "tools/simulator/race_control.hpp"
 #include "tools/simulator/referee.hpp"
@@ -18,6 +19,7 @@ struct SimulatorParams {
   ConeSensorParams lidar;
   ConeSensorParams camera;
   double cone_delay_s = 0.0;  // from the scan until its message
+  LidarRigParams lidars;
   RefereeParams referee;
   RaceControlParams race_control;
 };

@@ -2,12 +2,14 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/cone.hpp"
 #include "common/geometry.hpp"
+#include "common/local_enu.hpp"
 
 namespace hairpin {
 
@@ -20,6 +22,7 @@ class TrackError : public std::runtime_error {
 struct TrackCone {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  // map [m]
   ConeColour colour = ConeColour::kUnknown;
+  std::optional<Eigen::Matrix2d> covariance{};  // of a surveyed position [m^2]
 };
 
 /// A line across the track, by the driver's view. It ends on the sides.
@@ -31,8 +34,9 @@ struct GateLine {
 /// A track marked by cones, in map [m].
 struct Track {
   std::string name;
-  bool closed = true;  // a lap; false: start and finish differ (acceleration)
-  Pose2 start;         // T_map_base of the car waiting, before the start line
+  std::optional<GeodeticPoint> origin{};  // of map, x east and y north, where surveyed
+  bool closed = true;                     // a lap; false: start and finish differ (acceleration)
+  Pose2 start;                            // T_map_base of the car waiting, before the start line
   GateLine start_line;
   GateLine finish_line;          // the same line where closed
   std::vector<TrackCone> left;   // boundary in driving order from the start line on; blue or orange

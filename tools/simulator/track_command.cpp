@@ -24,6 +24,7 @@ struct Arguments {
   std::vector<std::string> files;
   std::string file;
   std::string out;
+  std::string format = "hairpin";
   bool json = false;
 };
 
@@ -48,7 +49,10 @@ Commands Define(CLI::App& app, Arguments& arguments) {
       AddCommand(app, "check",
                  "say what tracks are, and which rules they bend; 78 if one is refused", arguments),
       AddCommand(app, "draw", "draw a track as an SVG picture", arguments),
-      AddCommand(app, "convert", "rewrite a track of any format as our own YAML", arguments)};
+      AddCommand(
+          app, "convert",
+          "rewrite a track of any format, or a saved map, as our own, PacSim YAML or EUFS CSV",
+          arguments)};
   commands.generate->add_option("--seed", arguments.generator.seed, "of all choices")
       ->capture_default_str();
   commands.generate
@@ -60,12 +64,16 @@ Commands Define(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   commands.generate->add_option("--name", arguments.name, "of the track (default: seed N)");
   commands.generate->add_option("--out", arguments.out, "file to write")->required();
-  commands.check->add_option("files", arguments.files, "own YAML, PacSim or FSSIM YAML, EUFS CSV")
+  commands.check
+      ->add_option("files", arguments.files, "own YAML, saved map, PacSim or FSSIM YAML, EUFS CSV")
       ->required();
   commands.draw->add_option("file", arguments.file, "track of any format")->required();
   commands.draw->add_option("--out", arguments.out, "SVG file to write")->required();
   commands.convert->add_option("file", arguments.file, "track of any format")->required();
   commands.convert->add_option("out", arguments.out, "file to write")->required();
+  commands.convert->add_option("--to", arguments.format, "format to write")
+      ->check(CLI::IsMember({"hairpin", "pacsim", "eufs"}))
+      ->capture_default_str();
   return commands;
 }
 
@@ -140,7 +148,13 @@ void Draw(const Arguments& arguments) {
 
 void Convert(const Arguments& arguments) {
   const Track track = LoadTrack(arguments.file);
-  SaveTrack(track, arguments.out);
+  if (arguments.format == "hairpin") {
+    SaveTrack(track, arguments.out);
+  } else {
+    std::ofstream stream(arguments.out);
+    stream << (arguments.format == "pacsim" ? ToPacsim(track) : ToEufs(track));
+    if (!stream.flush()) throw std::runtime_error(arguments.out + ": cannot be written");
+  }
   Report(arguments, track);
 }
 

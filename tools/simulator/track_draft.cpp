@@ -4,6 +4,7 @@
 #include <array>
 
 #include "tools/simulator/track_geometry.hpp"
+#include "tools/simulator/track_ordering.hpp"
 
 namespace hairpin {
 
@@ -144,6 +145,14 @@ int LineOf(const TrackProblem& problem, const TrackDraft& draft) {
   return 1;
 }
 
+std::vector<LocatedCone> Ordered(const std::vector<LocatedCone>& cones) {
+  std::vector<Eigen::Vector2d> points;
+  for (const LocatedCone& cone : cones) points.push_back(cone.cone.position);
+  std::vector<LocatedCone> ordered;
+  for (const size_t i : OrderAlongClosedCurve(points)) ordered.push_back(cones[i]);
+  return ordered;
+}
+
 }  // namespace
 
 void RefuseTrack(const std::string& file, int line, const std::string& reason) {
@@ -208,6 +217,17 @@ Track Arrange(TrackDraft draft) {
   track.finish_line = finish_line;
   RefuseIf(FindProblem(track), draft);
   return track;
+}
+
+Track ArrangeUnordered(TrackDraft draft) {
+  if (std::max(draft.left.size(), draft.right.size()) > kMaxConesOfSide) {
+    RefuseTrack(draft.file, 1,
+                "more than " + std::to_string(kMaxConesOfSide) + " cones of a colour");
+  }
+  draft.left = Ordered(draft.left);
+  draft.right = Ordered(draft.right);
+  JoinSides(draft);
+  return Arrange(std::move(draft));
 }
 
 }  // namespace hairpin

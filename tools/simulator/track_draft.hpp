@@ -55,6 +55,9 @@ void JoinSides(TrackDraft& draft);
 /// takes.
 Track ShapeOf(const TrackDraft& draft);
 
+/// As Arrange(), for a lap whose sides come in any order.
+Track ArrangeUnordered(TrackDraft draft);
+
 /// Brings the sides into driving order from the start line on, and checks. The start line is, in
 /// this order: the draft's gate, the middle of the large orange cones nearest to the start, a line
 /// square to the car 2.5 m ahead. Lines across end on the sides. Throws TrackError.

@@ -1,11 +1,9 @@
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <sstream>
 
 #include "tools/simulator/track_draft.hpp"
 #include "tools/simulator/track_formats.hpp"
-#include "tools/simulator/track_ordering.hpp"
 
 namespace hairpin {
 
@@ -54,14 +52,6 @@ std::vector<Row> ReadRows(const std::string& text, const std::string& file) {
   return rows;
 }
 
-std::vector<LocatedCone> Ordered(const std::vector<LocatedCone>& cones) {
-  std::vector<Eigen::Vector2d> points;
-  for (const LocatedCone& cone : cones) points.push_back(cone.cone.position);
-  std::vector<LocatedCone> ordered;
-  for (const size_t i : OrderAlongClosedCurve(points)) ordered.push_back(cones[i]);
-  return ordered;
-}
-
 void Sort(const std::vector<Row>& rows, TrackDraft& draft) {
   static const std::map<std::string, ConeColour> kTags{{"blue", ConeColour::kBlue},
                                                        {"yellow", ConeColour::kYellow},
@@ -93,13 +83,7 @@ Track ReadEufsTrack(const std::string& text, const std::string& file) {
   TrackDraft draft;
   draft.file = file;
   Sort(ReadRows(text, file), draft);
-  if (std::max(draft.left.size(), draft.right.size()) > kMaxConesOfSide) {
-    RefuseTrack(file, 1, "more than " + std::to_string(kMaxConesOfSide) + " cones of a colour");
-  }
-  draft.left = Ordered(draft.left);
-  draft.right = Ordered(draft.right);
-  JoinSides(draft);
-  return Arrange(std::move(draft));
+  return ArrangeUnordered(std::move(draft));
 }
 
 }  // namespace hairpin

@@ -11,12 +11,31 @@ namespace {
 
 constexpr int kVersion = 1;
 
+/// [xx, xy, yy]
+Eigen::Matrix2d ReadCovariance(const TrackYaml& list) {
+  std::vector<double> values;
+  for (const TrackYaml& element : list.Elements()) values.push_back(element.Number());
+  if (values.size() != 3) list.Refuse("must be [xx, xy, yy]");
+  Eigen::Matrix2d covariance;
+  covariance << values[0], values[1], values[1], values[2];
+  if (!IsCovariance(covariance)) list.Refuse("is no covariance");
+  return covariance;
+}
+
+GeodeticPoint ReadOrigin(const TrackYaml& value) {
+  value.RefuseOtherKeys({"latitude_deg", "longitude_deg", "height_m"});
+  return {value.Get("latitude_deg").Number(), value.Get("longitude_deg").Number(),
+          value.Get("height_m").Number()};
+}
+
 LocatedCone ReadCone(const TrackYaml& value) {
-  value.RefuseOtherKeys({"x_m", "y_m", "colour"});
+  value.RefuseOtherKeys({"x_m", "y_m", "colour", "covariance_m2"});
   const TrackYaml colour = value.Get("colour");
   const auto known = ConeColourFromName(colour.Text());
   if (!known) colour.Refuse("no such colour: " + colour.Text());
-  return {{{value.Get("x_m").Number(), value.Get("y_m").Number()}, *known}, value.line()};
+  LocatedCone cone{{{value.Get("x_m").Number(), value.Get("y_m").Number()}, *known}, value.line()};
+  if (value.Has("covariance_m2")) cone.cone.covariance = ReadCovariance(value.Get("covariance_m2"));
+  return cone;
 }
 
 std::vector<LocatedCone> ReadCones(const TrackYaml& list) {
@@ -60,7 +79,13 @@ void WriteCones(std::ostream& stream, const char* key, const std::vector<TrackCo
   stream << key << ":" << (cones.empty() ? " []" : "") << '\n';
   for (const TrackCone& cone : cones) {
     stream << "  - {x_m: " << Exact(cone.position.x()) << ", y_m: " << Exact(cone.position.y())
-           << ", colour: " << NameOf(cone.colour) << "}\n";
+           << ", colour: " << NameOf(cone.colour);
+    if (cone.covariance) {
+      const Eigen::Matrix2d& p = *cone.covariance;
+      stream << ", covariance_m2: [" << Exact(p(0, 0)) << ", " << Exact(p(0, 1)) << ", "
+             << Exact(p(1, 1)) << "]";
+    }
+    stream << "}\n";
   }
 }
 
@@ -71,8 +96,14 @@ void WriteGate(std::ostream& stream, const char* key, const GateLine& gate) {
 void Write(std::ostream& stream, const Track& track) {
   stream << "hairpin_track: " << kVersion
          << "  # format version; positions are x forward, y left in map\n"
-         << "name: " << Quoted(track.name) << '\n'
-         << "closed: " << (track.closed ? "true" : "false") << '\n'
+         << "name: " << Quoted(track.name) << '\n';
+  if (track.origin) {
+    stream << "origin: {latitude_deg: " << Exact(track.origin->latitude_deg)
+           << ", longitude_deg: " << Exact(track.origin->longitude_deg)
+           << ", height_m: " << Exact(track.origin->height_m)
+           << "}  # of map, x east and y north\n";
+  }
+  stream << "closed: " << (track.closed ? "true" : "false") << '\n'
          << "start: {x_m: " << Exact(track.start.x) << ", y_m: " << Exact(track.start.y)
          << ", yaw_rad: " << Exact(track.start.yaw) << "}  # the waiting car's centre of gravity\n";
   WriteGate(stream, "start_line", track.start_line);
@@ -88,8 +119,8 @@ void Write(std::ostream& stream, const Track& track) {
 }  // namespace
 
 Track ReadHairpinTrack(const TrackYaml& root) {
-  root.RefuseOtherKeys({"hairpin_track", "name", "closed", "start", "start_line", "finish_line",
-                        "left", "right", "others", "clutter"});
+  root.RefuseOtherKeys({"hairpin_track", "name", "origin", "closed", "start", "start_line",
+                        "finish_line", "left", "right", "others", "clutter"});
   const TrackYaml version = root.Get("hairpin_track");
   if (version.Number() != kVersion)
     version.Refuse("format version must be " + std::to_string(kVersion));
@@ -112,6 +143,7 @@ Track ReadHairpinTrack(const TrackYaml& root) {
   Track track = ShapeOf(draft);
   track.start_line = {draft.start_gate->a, draft.start_gate->b};
   track.finish_line = {draft.finish_gate->a, draft.finish_gate->b};
+  if (root.Has("origin")) track.origin = ReadOrigin(root.Get("origin"));
   RefuseIf(FindProblem(track), draft);
   return track;
 }

@@ -22,10 +22,12 @@ std::string ReadFile(const std::string& file) {
 LoadedTrack ReadYaml(const std::string& text, const std::string& file) {
   const TrackYaml root = TrackYaml::Parse(text, file);
   if (root.Has("hairpin_track")) return {ReadHairpinTrack(root), TrackFormat::kHairpin};
+  if (root.Has("hairpin_map")) return {ReadMapTrack(root), TrackFormat::kMap};
   if (root.Has("track")) return {ReadPacsimTrack(root), TrackFormat::kPacsim};
   if (root.Has("cones_left")) return {ReadFssimTrack(root), TrackFormat::kFssim};
   root.Refuse(
-      "no track: none of the keys hairpin_track (our own), track (PacSim), cones_left (FSSIM), "
+      "no track: none of the keys hairpin_track (our own), hairpin_map (a saved map), track "
+      "(PacSim), cones_left (FSSIM), "
       "and no EUFS heading `tag,x,y,...`");
 }
 
@@ -35,6 +37,8 @@ std::string_view NameOf(TrackFormat format) {
   switch (format) {
     case TrackFormat::kHairpin:
       return "hairpin YAML";
+    case TrackFormat::kMap:
+      return "hairpin map";
     case TrackFormat::kPacsim:
       return "PacSim YAML";
     case TrackFormat::kFssim:

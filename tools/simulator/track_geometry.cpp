@@ -26,6 +26,13 @@ Polyline LapOf(const std::vector<TrackCone>& side, const Eigen::Vector2d& gate_e
 
 }  // namespace
 
+std::vector<TrackCone> AllCones(const Track& track) {
+  std::vector<TrackCone> all;
+  for (const auto* cones : {&track.left, &track.right, &track.others})
+    all.insert(all.end(), cones->begin(), cones->end());
+  return all;
+}
+
 Polyline PositionsOf(const std::vector<TrackCone>& cones) {
   Polyline line;
   line.reserve(cones.size());

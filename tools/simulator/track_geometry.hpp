@@ -11,6 +11,9 @@ namespace hairpin {
 /// Points in order, in map [m]. Where a function takes `closed`, the last is joined with the first.
 using Polyline = std::vector<Eigen::Vector2d>;
 
+/// All cones of a track: left, right, others.
+std::vector<TrackCone> AllCones(const Track& track);
+
 Polyline PositionsOf(const std::vector<TrackCone>& cones);
 
 size_t NumSegments(const Polyline& line, bool closed);

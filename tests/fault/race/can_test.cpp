@@ -11,7 +11,7 @@ namespace hairpin {
 namespace {
 
 RaceRun RunByCan(const std::vector<std::string>& faults) {
-  return RunInProcess(DefaultTrackFile(), 1, faults, {}, true);
+  return RunInProcess(DefaultTrackFile(), 1, faults, {}, SensorLevel::kCones, true);
 }
 
 TEST(RaceByCan, IsDrivenAsByMessagesAndRepeatsToTheByte) {

@@ -38,7 +38,7 @@ class MissionManagerNodeTest : public testing::Test {
       velocity.utime = utime;
       velocity.valid = 1;
       velocity.vx_mps = speed;
-      velocity.yaw_rate_radps = speed * Curvature();
+      velocity.yaw_rate_radps = speed * Curvature() + (speed > 0.0 ? yaw_rate_error : 0.0);
       others.Publish(channels::kVelocity, velocity);
     }
     drive_command_t command{};
@@ -61,12 +61,23 @@ class MissionManagerNodeTest : public testing::Test {
     local_map_t map{};
     map.utime = utime - 100'000;
     const Pose2 then = truth * Integrate({speed, 0.0, speed * Curvature()}, -0.1);
+    if (phase) {
+      global_map_t global{};
+      global.utime = utime - 100'000;
+      global.phase = *phase;
+      const Pose2 T_map_base = Pose2{30.0, -4.0, 2.0} * then;  // as is the known map
+      global.x_m = T_map_base.x;
+      global.y_m = T_map_base.y;
+      global.yaw_rad = T_map_base.yaw;
+      others.Publish(channels::kGlobalMap, global);
+    }
     const Pose2 T_local_map{5.0, 9.0, 1.0};  // the mapper's frame is its own
     const Pose2 T_local_base = T_local_map * then;
     map.x_m = T_local_base.x;
     map.y_m = T_local_base.y;
     map.yaw_rad = T_local_base.yaw;
     for (const double y : {1.7, -1.7}) {
+      if (!gate_is_seen) break;
       const Eigen::Vector2d position = T_local_map * Eigen::Vector2d(6.0, y);
       local_cone_t cone{};
       cone.x_m = position.x();
@@ -117,6 +128,9 @@ class MissionManagerNodeTest : public testing::Test {
   double distance = 0.0;
   Pose2 truth;
   bool velocity_runs = true;
+  bool gate_is_seen = true;
+  double yaw_rate_error = 0.0;   // of VELOCITY while driving [rad/s]
+  std::optional<int32_t> phase;  // of GLOBAL_MAP; empty: none comes
 };
 
 TEST_F(MissionManagerNodeTest, AnswersEachVehicle) {
@@ -152,6 +166,57 @@ TEST_F(MissionManagerNodeTest, DrivesOneLapStopsAndFinishes) {
   EXPECT_EQ(state->state, as_state_t::STATE_DRIVING);
   Run(0.3);
   EXPECT_EQ(state->state, as_state_t::STATE_FINISHED);
+}
+
+TEST_F(MissionManagerNodeTest, IsNotReadyForATrackdriveBeforeTheCarIsLocalisedAndSaysWhy) {
+  vehicle.mission = vehicle_t::MISSION_TRACKDRIVE;
+  Run(3.0);
+  EXPECT_EQ(state->state, as_state_t::STATE_OFF);
+  EXPECT_EQ(state->reason, "trackdrive: GLOBAL_MAP was never heard");
+  phase = global_map_t::PHASE_MAPPING;
+  Run(0.2);
+  EXPECT_EQ(state->reason, "trackdrive: no map is loaded");
+  phase = global_map_t::PHASE_LOST;
+  Run(0.2);
+  EXPECT_EQ(state->reason, "trackdrive: the car does not find itself on the map");
+  phase = global_map_t::PHASE_LOCALISED;
+  Run(0.2);
+  EXPECT_EQ(state->state, as_state_t::STATE_READY);
+  phase.reset();
+  Run(0.7);
+  EXPECT_EQ(state->state, as_state_t::STATE_OFF);
+  EXPECT_EQ(state->reason, "trackdrive: GLOBAL_MAP is stale");
+}
+
+TEST_F(MissionManagerNodeTest, CountsTenLapsOfATrackdriveAlsoWhenTheLocalisationIsLost) {
+  vehicle.mission = vehicle_t::MISSION_TRACKDRIVE;
+  phase = global_map_t::PHASE_LOCALISED;
+  StartDriving();
+  EXPECT_EQ(state->laps_to_drive, 10);
+  speed = 10.0;
+  Run(1.0);
+  EXPECT_EQ(state->reason, "driving lap 1 of 10");
+  phase = global_map_t::PHASE_LOST;
+  Run(10 * 20.0 - 1.0);
+  EXPECT_EQ(state->state, as_state_t::STATE_DRIVING);
+  EXPECT_EQ(state->lap, 9);
+  EXPECT_FALSE(state->mission_finished);
+  Run(1.0);
+  EXPECT_EQ(state->lap, 10);
+  EXPECT_TRUE(state->mission_finished);
+}
+
+TEST_F(MissionManagerNodeTest, CountsALapByTheMapWhereDeadReckoningDrifts) {
+  vehicle.mission = vehicle_t::MISSION_TRACKDRIVE;
+  phase = global_map_t::PHASE_LOCALISED;
+  gate_is_seen = false;
+  yaw_rate_error = 0.02;  // 20 m and more off after a lap
+  StartDriving();
+  speed = 10.0;
+  Run(20.0);
+  EXPECT_EQ(state->lap, 0);
+  Run(1.0);  // the line at 206 m and 1.5 m of overrun
+  EXPECT_EQ(state->lap, 1);
 }
 
 TEST_F(MissionManagerNodeTest, ResStopWhileDrivingIsAnEmergencyForGood) {

@@ -2,79 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <optional>
+#include "tests/node/path_tracker/straight_drive.hpp"
 
 namespace hairpin {
 namespace {
 
-// The rest of the car on a straight, at a constant speed.
-class PathTrackerNodeTest : public testing::Test {
- protected:
-  PathTrackerNodeTest() {
-    others.Subscribe(channels::kDriveCommand, [this](const drive_command_t& message) {
-      command = message;
-      ++commands;
-    });
-    status.map_mode = pipeline_status_t::MODE_FUSION;
-    status.speed_cap_mps = 12.0;
-    as_state.state = as_state_t::STATE_DRIVING;
-    velocity.valid = 1;
-    velocity.vx_mps = 5.0;
-    velocity.covariance[0] = velocity.covariance[4] = velocity.covariance[8] = 0.01;
-  }
-
-  track_t Track() const {
-    track_t track{};
-    track.utime = utime - 100'000;
-    track.valid = 1;
-    track.seen_length_m = 13.0;
-    track.length_m = 16.0;
-    for (int i = 0; i <= 32; ++i) track.path.push_back({0.5 * i, 0.0, 3.0, i > 26});
-    track.num_points = static_cast<int32_t>(track.path.size());
-    return track;
-  }
-
-  void Tick() {
-    utime += 10'000;
-    ++tick;
-    if (tick % 2 == 0) {
-      status.utime = utime;
-      others.Publish(channels::kPipelineStatus, status);
-    }
-    if (tick % 5 == 0) {
-      as_state.utime = utime;
-      others.Publish(channels::kAsState, as_state);
-    }
-    if (tick % 10 == 0 && tracks_run) others.Publish(channels::kTrack, Track());
-    velocity.utime = utime;
-    others.Publish(channels::kVelocity, velocity);
-    transport.Drain();
-  }
-  void Run(double seconds) {
-    for (int i = 0; i < static_cast<int>(std::lround(seconds * 100.0)); ++i) Tick();
-  }
-  channel_health_t Health(const std::string& channel) const {
-    for (const channel_health_t& health : bus.Health()) {
-      if (health.channel == channel) return health;
-    }
-    return {};
-  }
-
-  Transport transport{"memq://"};
-  Bus others{transport, "others", 1};
-  Bus bus{transport, "path_tracker", 2};
-  PathTrackerNode node{LoadPathTrackerParams(Config::Load(
-                           std::string(HAIRPIN_SOURCE_DIR) + "/config", "path_tracker")),
-                       bus};
-  pipeline_status_t status{};
-  as_state_t as_state{};
-  velocity_t velocity{};
-  bool tracks_run = true;
-  std::optional<drive_command_t> command;
-  int commands = 0;
-  int64_t utime = 1'700'000'000'000'000;
-  int tick = 0;
-};
+class PathTrackerNodeTest : public StraightDrive {};
 
 TEST_F(PathTrackerNodeTest, AnswersEachVelocityWithItsTime) {
   Run(0.5);

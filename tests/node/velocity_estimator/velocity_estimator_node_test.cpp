@@ -39,7 +39,8 @@ class VelocityEstimatorNodeTest : public testing::Test {
     motors_t message{};
     message.utime = reading.utime;
     std::copy(reading.speed.begin(), reading.speed.end(), message.wheel_speed_radps);
-    std::copy(reading.torque.begin(), reading.torque.end(), message.wheel_torque_nm);
+    if (reading.torque)
+      std::copy(reading.torque->begin(), reading.torque->end(), message.wheel_torque_nm);
     car_.Publish(channels::kMotors, message);
   }
   void Send(const SteeringReading& reading) {
@@ -143,7 +144,7 @@ TEST_F(VelocityEstimatorNodeTest, RefusesAbsurdReadingsAndCountsThem) {
   Send(GroundSpeedReading{utime_ + 1000, {1e6, 0.0}});
   Send(GroundSpeedReading{utime_ + 1000, {0.0, -51.0}});
   Send(MotorsReading{utime_ + 1000, {1e6, 0.0, 0.0, 0.0}, {}});
-  Send(MotorsReading{utime_ + 1000, {}, {0.0, 0.0, 0.0, 1e4}});
+  Send(MotorsReading{utime_ + 1000, {}, Wheels{0.0, 0.0, 0.0, 1e4}});
   Send(SteeringReading{utime_ + 1000, 3.0});
   Send(GnssReading{utime_ + 1000, {1e6, 0.0}, {0.0, 0.0}, 0.0, 0.01});
   Send(GnssReading{utime_ + 1000, {1.0, 0.0}, {0.0, 0.0}, 0.0, -0.01});

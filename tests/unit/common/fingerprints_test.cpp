@@ -32,7 +32,7 @@ namespace {
 const std::map<std::string, uint64_t> kPinned{
     {"as_state_t", 0x64fafff1108dacfbu},       {"boundary_point_t", 0x9cd264b380acf4eau},
     {"channel_health_t", 0xe39580229d3ac0b7u}, {"cone_observation_t", 0x141d076b77a0fd60u},
-    {"cones_t", 0x59ee8319ec28bb25u},          {"drive_command_t", 0xf5ca1516d14bc877u},
+    {"cones_t", 0x59ee8319ec28bb25u},          {"drive_command_t", 0x5965b3fa62afb67au},
     {"gnss_t", 0x3dda50c87caf4211u},           {"ground_speed_t", 0x5d303aa661d6d42au},
     {"heartbeat_t", 0xc3ff57b93825c693u},      {"imu_t", 0xe776272a8131cc99u},
     {"local_cone_t", 0x5d0f76783e214674u},     {"local_map_t", 0xb974666942e65de7u},
@@ -42,9 +42,9 @@ const std::map<std::string, uint64_t> kPinned{
     {"truth_cone_t", 0x0c8e829833420196u},     {"truth_t", 0x9a8ca8f0e7d0b94au},
     {"truth_track_t", 0x78473a999abfb991u},    {"vehicle_t", 0x4a10b5ce8d4ee6b8u},
     {"cone_cluster_t", 0x184e7bec69fd5cd0u},   {"cone_clusters_t", 0x519f077439ef7890u},
-    {"global_cone_t", 0x62c355997fc0bcc1u},    {"global_map_t", 0x6b59960d97217597u},
+    {"global_cone_t", 0x62c355997fc0bcc1u},    {"global_map_t", 0x49d41c80ac4b5c77u},
     {"lidar_scan_t", 0xf35992f7689b9cd4u},     {"race_line_point_t", 0x7ad0da9c37111ec2u},
-    {"race_line_t", 0x5afbdee1a138dc37u},      {"velocity_t", 0x7a904c2206ae3cb8u},
+    {"race_line_t", 0xac1594ee0aaa1394u},      {"velocity_t", 0x7a904c2206ae3cb8u},
     {"view_sector_t", 0x4e3168e5e1b7cf57u},
 };
 

@@ -168,14 +168,15 @@ void VisitReals(cone_clusters_t& m, Visitor visit) {
 }
 template <class Visitor>
 void VisitReals(global_map_t& m, Visitor visit) {
-  VisitEach(visit, m.x_m, m.y_m, m.yaw_rad, m.solve_ms);
+  VisitEach(visit, m.x_m, m.y_m, m.yaw_rad);
   VisitAll(m.pose_covariance, visit);
   VisitAll(m.T_map_local, visit);
   for (auto& c : m.cones) VisitCone(c, visit);
 }
 template <class Visitor>
 void VisitReals(race_line_t& m, Visitor visit) {
-  VisitAll(m.T_map_local, visit);
+  VisitEach(visit, m.x_m, m.y_m, m.yaw_rad);
+  VisitAll(m.pose_covariance, visit);
   for (auto& p : m.points) VisitEach(visit, p.x_m, p.y_m, p.speed_mps, p.left_m, p.right_m);
 }
 template <class Visitor>

@@ -64,10 +64,10 @@ TEST(WheelForces, LeaveToSteeringWhatCorneringNeeds) {
   const PathTrackerParams params = test::ShippedParams();
   const WheelForces forces(params.forces, params.car);
   EXPECT_EQ(forces.WithinGrip(-9.0, 0.0), -9.0);
-  EXPECT_NEAR(forces.WithinGrip(-10.0, 8.0), -std::sqrt(11.0 * 11.0 - 64.0), 1e-9);
-  EXPECT_NEAR(forces.WithinGrip(-10.0, -8.0), -std::sqrt(11.0 * 11.0 - 64.0), 1e-9);
+  EXPECT_NEAR(forces.WithinGrip(-10.0, 8.0), -std::sqrt(12.0 * 12.0 - 64.0), 1e-9);
+  EXPECT_NEAR(forces.WithinGrip(-10.0, -8.0), -std::sqrt(12.0 * 12.0 - 64.0), 1e-9);
   EXPECT_EQ(forces.WithinGrip(-10.0, 20.0), -3.0);
-  EXPECT_EQ(forces.WithinGrip(5.0, 11.0), 3.0);
+  EXPECT_EQ(forces.WithinGrip(5.0, 12.0), 3.0);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@ namespace {
 
 constexpr StandstillParams kParams{.hold = 0.3,
                                    .max_wheel_speed = 0.4,
+                                   .max_ground_speed = 0.25,
                                    .max_wheel_torque = 10.0,
                                    .max_yaw_rate = 0.03,
                                    .max_acceleration = 0.4,
@@ -39,7 +40,7 @@ TEST(Standstill, NeedsQuietWheelsAndAQuietImu) {
     motors.speed[wheel] = -0.5;
     EXPECT_FALSE(StandsAfterASecond(quiet, motors)) << wheel;
     motors.speed[wheel] = 0.0;
-    motors.torque[wheel] = 12.0;
+    motors.torque.emplace()[wheel] = 12.0;
     EXPECT_FALSE(StandsAfterASecond(quiet, motors)) << wheel;
   }
 }

@@ -74,7 +74,8 @@ TEST(VelocityEstimator, MirrorsWithItsInputs) {
     mirrored.imu.value().acceleration.y() *= -1.0;
     mirrored.ground_speed.value().velocity.y() *= -1.0;
     mirrored.steering.value().angle *= -1.0;
-    for (Wheels* wheels : {&mirrored.motors.value().speed, &mirrored.motors.value().torque}) {
+    for (Wheels* wheels :
+         {&mirrored.motors.value().speed, &mirrored.motors.value().torque.value()}) {
       std::swap((*wheels)[0], (*wheels)[1]);
       std::swap((*wheels)[2], (*wheels)[3]);
     }

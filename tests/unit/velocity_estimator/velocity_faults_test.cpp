@@ -84,6 +84,25 @@ TEST(VelocityFaults, DrivesOnWithoutGnss) {
   EXPECT_EQ(EstimateAt(samples, 8.30).states.gnss, SensorState::kSilent);
 }
 
+TEST(VelocityFaults, KeepsTheLateralVelocityByTheRearTyresWhereNoSensorMeasuresIt) {
+  const auto samples = DriveWith([](double, Readings& readings) {
+    readings.ground_speed.reset();
+    readings.gnss.reset();
+  });
+  // This car's tyres are several times softer than the parameters say.
+  ExpectWithin(samples, 0.4, 0.009);
+  EXPECT_LT(StepAt(samples, kFrom), 0.05);
+}
+
+TEST(VelocityFaults, DrivesOnWithoutSteeringAndMotorCurrents) {
+  const auto samples = DriveWith([](double, Readings& readings) {
+    readings.steering.reset();
+    readings.motors->torque.reset();
+  });
+  ExpectWithin(samples, 0.15, 0.009);
+  ExpectAllUsed(EstimateAt(samples, 17.0).states);
+}
+
 TEST(VelocityFaults, DrivesOnWithoutSteering) {
   const auto samples = DriveWith([](double, Readings& readings) { readings.steering.reset(); });
   ExpectWithin(samples, 0.15, 0.009);
@@ -260,7 +279,7 @@ TEST(VelocityFaults, IsNotMisledByAWheelThatSpins) {
   const auto axle_under_torque = DriveWith([](double, Readings& readings) {
     for (const size_t i : {2u, 3u}) {
       readings.motors->speed[i] *= 1.3;
-      readings.motors->torque[i] = 280.0;
+      readings.motors->torque.value()[i] = 280.0;
     }
   });
   ExpectWithin(axle_under_torque, 0.15, 0.009);
@@ -269,7 +288,7 @@ TEST(VelocityFaults, IsNotMisledByAWheelThatSpins) {
 TEST(VelocityFaults, TellsLockedWheelsFromStandstill) {
   const auto samples = DriveWith([](double, Readings& readings) {
     readings.motors->speed = {};
-    readings.motors->torque = {};
+    readings.motors->torque = Wheels{};
   });
   ExpectWithin(samples, 0.15, 0.009);
 }

@@ -15,7 +15,7 @@ namespace {
 class ModelCar {
  public:
   ModelCar(const VelocityEstimatorParams& params, uint32_t seed)
-      : params_(params), slip_(params.slip, params.car), random_(seed) {
+      : params_(params), slip_(params.slip, params.tyre, params.car), random_(seed) {
     state_.head<2>() << 15.0, 0.0;
     for (int i = 0; i < 4; ++i) state_[kSlip + i] = Draw(params.slip.sigma_free);
   }
@@ -26,7 +26,8 @@ class ModelCar {
     const StateMatrix noise =
         ProcessNoise(params_.motion, slip_.Sigmas({}, state_[kAcceleration]), decay, kPeriod);
     state_ = Move(state_, kPeriod);
-    state_.tail<4>() *= decay;
+    const double slip = slip_.Mean(state_[kAcceleration]);
+    state_.tail<4>().array() = slip + decay * (state_.tail<4>().array() - slip);
     for (int i = 0; i < kStateSize; ++i) state_[i] += Draw(std::sqrt(noise(i, i)));
   }
 

@@ -89,7 +89,7 @@ class Traffic {
          {"CONES_FUSION", "CONES_LIDAR", "CONES_CAMERA", "LOCAL_MAP", "TRACK"})
       Send(channel, now - kDelay);
     for (const char* daemon : {"velocity_estimator", "local_mapper", "boundary_estimator",
-                               "path_tracker", "mission_manager"}) {
+                               "path_tracker", "mission_manager", "global_mapper"}) {
       Heartbeat(daemon);
     }
   }

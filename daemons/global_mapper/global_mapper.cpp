@@ -1,0 +1,165 @@
+#include "daemons/global_mapper/global_mapper.hpp"
+
+#include <cmath>
+
+#include "common/clock.hpp"
+#include "daemons/global_mapper/require.hpp"
+
+namespace hairpin {
+namespace {
+
+constexpr double kGateMargin = 2.0;   // m beside the gate's cones that still is through it
+constexpr double kLostSpeed = 5.0;    // m/s, of an unknown motion: the sigma that is assumed
+constexpr double kLostYawRate = 0.3;  // rad/s
+constexpr double kMaxJump = 3.0;      // m past the line at one step: the estimate has jumped
+
+/// Of a car of which nothing is known for `seconds` but that it goes no faster than usual.
+Motion UnknownMotion(double seconds) {
+  Motion motion;
+  const double position = std::pow(0.1 + kLostSpeed * seconds, 2);
+  motion.covariance =
+      Eigen::Vector3d(position, position, std::pow(0.01 + kLostYawRate * seconds, 2)).asDiagonal();
+  return motion;
+}
+
+}  // namespace
+
+void GlobalMapperParams::Validate() const {
+  map.Validate();
+  localiser.Validate();
+  odometry.Validate();
+  RequireGlobalMap(min_lap_distance > 0.0, "min_lap_distance must be > 0");
+}
+
+GlobalMapper::GlobalMapper(const GlobalMapperParams& params)
+    : params_(params), odometry_(params.odometry), map_(params.map) {
+  params.Validate();
+}
+
+GlobalMapper::GlobalMapper(const GlobalMapperParams& params, const KnownMap& known)
+    : GlobalMapper(params) {
+  localiser_.emplace(params.localiser, known.cones, known.start);
+}
+
+std::string_view GlobalMapper::AddVelocity(int64_t utime, const Twist2& velocity,
+                                           const Eigen::Matrix3d& covariance) {
+  return odometry_.Add(utime, velocity, covariance);
+}
+
+/// Within an epoch the local map's own frame says how the car moved, across a gap of our own making
+/// too; VELOCITY says how well, and bridges two epochs.
+Motion GlobalMapper::MotionSince(const Seen& before, const LocalMapInput& map) const {
+  const auto integrated = odometry_.Between(before.utime, map.utime);
+  const double seconds = SecondsBetween(before.utime, map.utime);
+  if (before.epoch != map.epoch) return integrated.value_or(UnknownMotion(seconds));
+  Motion motion;
+  motion.T_from_to = before.T_local_base.Inverse() * map.T_local_base;
+  motion.covariance = integrated ? integrated->covariance
+                                 : CovarianceByDistance(params_.odometry, motion.T_from_to);
+  return motion;
+}
+
+GlobalMapper::Outcome GlobalMapper::AddLocalMap(const LocalMapInput& map) {
+  if (last_ && map.utime <= last_->utime) return {std::nullopt, {}, "time does not increase"};
+  Outcome outcome;
+  if (localiser_) {
+    outcome.estimate = Localise(map);
+  } else {
+    outcome = Map(map);
+  }
+  last_ = Seen{map.utime, map.epoch, map.T_local_base};
+  return outcome;
+}
+
+GlobalMapEstimate GlobalMapper::Localise(const LocalMapInput& map) {
+  std::optional<Motion> motion;
+  if (last_) motion = MotionSince(*last_, map);
+  if (motion) odometer_ += motion->T_from_to.position().norm();
+  localiser_->Observe(map, motion);
+  GlobalMapEstimate estimate = Estimate(map, localiser_->T_map_base());
+  estimate.phase = localiser_->localised() ? MapPhase::kLocalised : MapPhase::kLost;
+  estimate.pose_covariance = localiser_->covariance();
+  estimate.cones = localiser_->cones();
+  if (localiser_->localised()) CountLaps(estimate.T_map_base, odometer_, estimate.cones);
+  estimate.laps = laps_;
+  return estimate;
+}
+
+GlobalMapper::Outcome GlobalMapper::Map(const LocalMapInput& map) {
+  Outcome outcome;
+  Motion motion;
+  if (keyframe_) motion = MotionSince(*keyframe_, map);
+  const bool was_closed = map_.loop_closed();
+  bool valid = true;
+  if (!keyframe_ || map_.IsKeyframe(motion.T_from_to)) {
+    TrackMap::Step step = map_.Observe(map, motion);
+    outcome.records = std::move(step.records);
+    valid = step.solved;
+    keyframe_ = Seen{map.utime, map.epoch, map.T_local_base};
+    motion = {};
+  }
+  GlobalMapEstimate estimate = Estimate(map, map_.last_pose() * motion.T_from_to);
+  estimate.valid = valid;
+  estimate.phase = map_.loop_closed() ? MapPhase::kLoopClosed : MapPhase::kMapping;
+  estimate.pose_covariance = map_.last_covariance() + motion.covariance;
+  estimate.cones = map_.Cones();
+  estimate.keyframes = static_cast<int>(map_.graph().num_poses());
+  estimate.laps = laps_;
+  CountLapsOfMap(was_closed, estimate.T_map_base,
+                 map_.odometer() + motion.T_from_to.position().norm());
+  if (laps_ > estimate.laps) outcome.driven = Driven();
+  estimate.laps = laps_;
+  outcome.estimate = std::move(estimate);
+  return outcome;
+}
+
+std::vector<Eigen::Vector2d> GlobalMapper::Driven() const {
+  std::vector<Eigen::Vector2d> driven;
+  const PoseLandmarkGraph& graph = map_.graph();
+  for (size_t i = graph.first_pose(); i < graph.end_pose(); ++i)
+    driven.push_back(graph.pose(i).position());
+  return driven;
+}
+
+GlobalMapEstimate GlobalMapper::Estimate(const LocalMapInput& map, const Pose2& T_map_base) const {
+  GlobalMapEstimate estimate;
+  estimate.utime = map.utime;
+  estimate.epoch = map.epoch;
+  estimate.T_map_base = T_map_base;
+  estimate.T_map_local = T_map_base * map.T_local_base.Inverse();
+  return estimate;
+}
+
+void GlobalMapper::CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer) {
+  if (!map_.loop_closed()) return;
+  if (was_closed) return CountLaps(T_map_base, odometer, map_.Cones());
+  laps_ = 1;
+  lap_odometer_ = odometer;
+}
+
+void GlobalMapper::CountLaps(const Pose2& T_map_base, double odometer,
+                             const std::vector<GlobalCone>& cones) {
+  // Without a gate the line goes across where the map began.
+  const MapGate gate =
+      FindMapGate(cones).value_or(MapGate{{0.0, kGateMargin}, {0.0, -kGateMargin}});
+  const double past = gate.Past(T_map_base.position());
+  const bool through = gate.Spans(T_map_base.position(), kGateMargin);
+  const bool crossed = past_gate_ && *past_gate_ < 0.0 && past >= 0.0 && past < kMaxJump && through;
+  past_gate_ = past;
+  if (!crossed || odometer - lap_odometer_ < params_.min_lap_distance) return;
+  ++laps_;
+  lap_odometer_ = odometer;
+}
+
+void GlobalMapper::Replay(const std::vector<MapRecord>& records) {
+  for (const MapRecord& record : records) {
+    const bool was_closed = map_.loop_closed();
+    map_.Replay(record);
+    CountLapsOfMap(was_closed, map_.last_pose(), map_.odometer());
+  }
+  if (map_.empty()) return;
+  const KeyframeRecord& last = map_.last();
+  keyframe_ = last_ = Seen{last.utime, last.epoch, last.T_local_base};
+}
+
+}  // namespace hairpin

@@ -1,0 +1,137 @@
+#include "daemons/global_mapper/information_prior.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace hairpin {
+namespace {
+
+using RowMajor33 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+using RowMajor23 = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
+using RowMajor22 = Eigen::Matrix<double, 2, 2, Eigen::RowMajor>;
+
+}  // namespace
+
+InformationPrior::InformationPrior(const Eigen::Vector3d& pose, double variance)
+    : H_(Eigen::MatrixXd::Identity(3, 3) / variance),
+      b_(Eigen::VectorXd::Zero(3)),
+      reference_(pose) {}
+
+std::optional<Eigen::Index> InformationPrior::SlotOf(size_t landmark) const {
+  if (landmark >= first_of_.size() || first_of_[landmark] < 0) return std::nullopt;
+  return first_of_[landmark];
+}
+
+Eigen::Index InformationPrior::AddSlot(size_t landmark, const double* position) {
+  if (const auto slot = SlotOf(landmark)) return *slot;
+  const Eigen::Index first = H_.rows();
+  H_.conservativeResizeLike(Eigen::MatrixXd::Zero(first + 2, first + 2));
+  b_.conservativeResizeLike(Eigen::VectorXd::Zero(first + 2));
+  reference_.conservativeResize(first + 2);
+  reference_.tail<2>() = Eigen::Vector2d(position[0], position[1]);
+  if (first_of_.size() <= landmark) first_of_.resize(landmark + 1, -1);
+  first_of_[landmark] = first;
+  landmarks_.push_back(landmark);
+  return first;
+}
+
+void InformationPrior::Marginalise(const double* oldest, const double* next,
+                                   const OdometryMeasurement& odometry,
+                                   const std::vector<Sighting>& sightings) {
+  for (const Sighting& sighting : sightings) AddSlot(sighting.landmark, sighting.position);
+  const Eigen::Index size = H_.rows();
+  // Everything that touches the oldest pose: its own block, its row to the rest, its vector.
+  // Linear factors are r = r0 + J (x - x0), with d = x - reference: r = (r0 + J (reference - x0)) +
+  // J d.
+  Eigen::Matrix3d H00 = H_.topLeftCorner<3, 3>();
+  Eigen::Vector3d b0 = b_.head<3>();
+  Eigen::MatrixXd row = H_.topRows(3);
+  row.leftCols<3>().setZero();  // becomes the next pose's
+  H_.topRows(3).setZero();
+  H_.leftCols(3).setZero();
+  b_.head<3>().setZero();
+  const Eigen::Vector3d shift = reference_.head<3>() - Eigen::Map<const Eigen::Vector3d>(oldest);
+
+  for (const Sighting& sighting : sightings) {
+    Eigen::Vector2d r;
+    RowMajor23 Jp;
+    RowMajor22 Jl;
+    LandmarkResidual(*sighting.measurement, oldest, sighting.position, r.data(), Jp.data(),
+                     Jl.data());
+    const Eigen::Index l = *SlotOf(sighting.landmark);
+    r += Jp * shift;
+    r += Jl * (reference_.segment<2>(l) - Eigen::Map<const Eigen::Vector2d>(sighting.position));
+    const double w = sighting.weight;
+    H00 += w * Jp.transpose() * Jp;
+    b0 -= w * Jp.transpose() * r;
+    row.middleCols<2>(l) += w * Jp.transpose() * Jl;
+    H_.block<2, 2>(l, l) += w * Jl.transpose() * Jl;
+    b_.segment<2>(l) -= w * Jl.transpose() * r;
+  }
+  Eigen::Vector3d r;
+  RowMajor33 J0;
+  RowMajor33 J1;
+  OdometryResidual(odometry, oldest, next, r.data(), J0.data(), J1.data());
+  reference_.head<3>() = Eigen::Map<const Eigen::Vector3d>(next);
+  r += J0 * shift;
+  H00 += J0.transpose() * J0;
+  b0 -= J0.transpose() * r;
+  row.leftCols<3>() += J0.transpose() * J1;
+  H_.topLeftCorner<3, 3>() += J1.transpose() * J1;
+  b_.head<3>() -= J1.transpose() * r;
+
+  const Eigen::LLT<Eigen::Matrix3d> factor(H00);
+  const Eigen::MatrixXd gain = factor.solve(row);  // 3 x size
+  H_.triangularView<Eigen::Lower>() -= row.transpose() * gain;
+  H_.triangularView<Eigen::StrictlyUpper>() = H_.transpose();
+  b_.noalias() -= gain.transpose() * b0;
+  static_cast<void>(size);
+}
+
+void InformationPrior::Merge(size_t landmark, size_t into) {
+  const auto from = SlotOf(landmark);
+  if (!from) return;
+  const auto to = SlotOf(into);
+  if (!to) {
+    // Only renamed; its reference stays what it was.
+    if (first_of_.size() <= into) first_of_.resize(into + 1, -1);
+    first_of_[into] = *from;
+    first_of_[landmark] = -1;
+    *std::find(landmarks_.begin(), landmarks_.end(), landmark) = into;
+    return;
+  }
+  // Of x = reference_to + d_to follows d_from = d_to + (reference_to - reference_from).
+  const Eigen::Vector2d offset = reference_.segment<2>(*to) - reference_.segment<2>(*from);
+  b_ -= H_.middleCols<2>(*from) * offset;
+  H_.middleRows<2>(*to) += H_.middleRows<2>(*from).eval();
+  H_.middleCols<2>(*to) += H_.middleCols<2>(*from).eval();
+  b_.segment<2>(*to) += b_.segment<2>(*from).eval();
+  const Eigen::Index behind = H_.rows() - *from - 2;
+  const auto shrink = [&](auto& vector) {
+    vector.segment(*from, behind) = vector.tail(behind).eval();
+    vector.conservativeResize(vector.size() - 2);
+  };
+  H_.middleRows(*from, behind) = H_.bottomRows(behind).eval();
+  H_.middleCols(*from, behind) = H_.rightCols(behind).eval();
+  H_.conservativeResize(H_.rows() - 2, H_.cols() - 2);
+  shrink(b_);
+  shrink(reference_);
+  std::erase(landmarks_, landmark);
+  for (Eigen::Index& first : first_of_) first -= first > *from ? 2 : 0;
+  first_of_[landmark] = -1;
+}
+
+std::optional<InformationPrior::Conditional> InformationPrior::Condition(
+    const std::vector<Eigen::Index>& kept, const Eigen::VectorXd& difference) const {
+  // The gradient at the present difference, of which the kept variables' own share is left to
+  // solve.
+  Conditional conditional;
+  conditional.information = H_(kept, kept);
+  const Eigen::VectorXd gradient = H_(kept, Eigen::all) * difference - b_(kept);
+  const Eigen::LLT<Eigen::MatrixXd> factor(conditional.information);
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  conditional.mean = reference_(kept) + difference(kept) - factor.solve(gradient);
+  return conditional;
+}
+
+}  // namespace hairpin

@@ -1,0 +1,75 @@
+#include "daemons/global_mapper/map_store.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "common/clock.hpp"
+#include "daemons/global_mapper/map_file.hpp"
+#include "daemons/global_mapper/require.hpp"
+
+namespace hairpin {
+namespace {
+
+int64_t TimeOf(const MapRecord& record) {
+  return std::visit([](const auto& kind) { return kind.utime; }, record);
+}
+
+}  // namespace
+
+MapStore::MapStore(const MapStoreParams& params) : params_(params) {
+  RequireGlobalMap(params.resume_within > 0.0, "resume_within must be > 0");
+  RequireGlobalMap(params.max_journal_bytes > 0, "max_journal_bytes must be > 0");
+  if (params_.directory.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(params_.directory, error);
+  if (error) problem_ = params_.directory + ": " + error.message();
+  journal_ = std::make_unique<Journal>(params_.directory + "/journal", params_.max_journal_bytes);
+}
+
+size_t MapStore::Resume(int64_t utime, GlobalMapper& mapper) {
+  if (!journal_) return 0;
+  const JournalContents contents = ReadJournal(params_.directory + "/journal");
+  const int64_t ended = contents.records.empty() ? 0 : TimeOf(contents.records.back());
+  const double ago = SecondsBetween(ended, utime);
+  if (ago <= 0.0 || ago > params_.resume_within) {
+    journal_->Start();
+    return 0;
+  }
+  mapper.Replay(contents.records);
+  saved_laps_ = mapper.laps();
+  journal_->Continue(contents.good_bytes);
+  return contents.records.size();
+}
+
+void MapStore::Keep(const GlobalMapper::Outcome& outcome, int64_t session) {
+  if (!journal_) return;
+  if (!outcome.records.empty()) journal_->Append(outcome.records, TimeOf(outcome.records.back()));
+  if (!journal_failed_ && !journal_->problem().empty()) {
+    journal_failed_ = true;
+    problem_ = journal_->problem();
+  }
+  if (outcome.estimate && outcome.estimate->phase == MapPhase::kLoopClosed &&
+      outcome.estimate->laps > saved_laps_)
+    Save(outcome, session);
+}
+
+void MapStore::Save(const GlobalMapper::Outcome& outcome, int64_t session) {
+  const GlobalMapEstimate& estimate = *outcome.estimate;
+  saved_laps_ = estimate.laps;
+  MapFile map;
+  map.session = session;
+  map.utime = estimate.utime;
+  map.laps = estimate.laps;
+  map.gate = FindMapGate(estimate.cones);
+  map.driven = outcome.driven;
+  map.cones = estimate.cones;
+  try {
+    SaveMapFile(map, map_file());
+  } catch (const std::runtime_error& error) {
+    problem_ = error.what();
+  }
+}
+
+std::string MapStore::TakeProblem() { return std::exchange(problem_, {}); }
+
+}  // namespace hairpin

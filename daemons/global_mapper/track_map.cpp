@@ -1,0 +1,191 @@
+#include "daemons/global_mapper/track_map.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "daemons/global_mapper/require.hpp"
+
+namespace hairpin {
+namespace {
+
+Eigen::Matrix2d PointCovariance(const Eigen::Matrix3d& pose, const Eigen::Vector2d& lever) {
+  Eigen::Matrix<double, 2, 3> J = Eigen::Matrix<double, 2, 3>::Zero();
+  J.leftCols<2>().setIdentity();
+  J(0, 2) = -lever.y();
+  J(1, 2) = lever.x();
+  return J * pose * J.transpose();
+}
+
+/// Of the pose after a motion, both in map.
+Eigen::Matrix3d Propagate(const Eigen::Matrix3d& covariance, const Pose2& T_map_from,
+                          const Motion& motion) {
+  const Eigen::Vector2d step = T_map_from.rotation() * motion.T_from_to.position();
+  Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+  F(0, 2) = -step.y();
+  F(1, 2) = step.x();
+  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+  G.topLeftCorner<2, 2>() = T_map_from.rotation();
+  return F * covariance * F.transpose() + G * motion.covariance * G.transpose();
+}
+
+}  // namespace
+
+void TrackMapParams::Validate() const {
+  graph.Validate();
+  RequireGlobalMap(filter.max_range > 0.0, "max_range must be > 0");
+  RequireGlobalMap(filter.min_existence >= 0.0 && filter.min_existence <= 1.0,
+                   "min_existence must be in [0, 1]");
+  RequireGlobalMap(filter.min_observations >= 1, "min_observations must be >= 1");
+  RequireGlobalMap(keyframe_distance > 0.0, "keyframe_distance must be > 0");
+  RequireGlobalMap(keyframe_angle > 0.0, "keyframe_angle must be > 0");
+  RequireGlobalMap(max_keyframes > graph.window_poses, "max_keyframes must be > window_poses");
+  RequireGlobalMap(full_solve_keyframes > 0, "full_solve_keyframes must be > 0");
+  RequireGlobalMap(max_landmarks > 0, "max_landmarks must be > 0");
+  RequireGlobalMap(min_sightings > 0, "min_sightings must be > 0");
+  RequireGlobalMap(covariance_inflation >= 1.0, "covariance_inflation must be >= 1");
+  RequireGlobalMap(cone_sigma > 0.0, "cone_sigma must be > 0");
+  RequireGlobalMap(association_gate > 0.0, "association_gate must be > 0");
+  RequireGlobalMap(memory_distance > 0.0, "memory_distance must be > 0");
+  loop.constellation.Validate();
+  RequireGlobalMap(loop.min_distance > 0.0, "loop min_distance must be > 0");
+  RequireGlobalMap(loop.recent_distance > 0.0, "loop recent_distance must be > 0");
+  RequireGlobalMap(loop.search_radius > 0.0, "loop search_radius must be > 0");
+  RequireGlobalMap(loop.gate_chi2 > 0.0, "loop gate_chi2 must be > 0");
+  RequireGlobalMap(loop.max_rmse > 0.0, "loop max_rmse must be > 0");
+  RequireGlobalMap(loop.same_cone > 0.0, "loop same_cone must be > 0");
+}
+
+TrackMap::TrackMap(const TrackMapParams& params) : params_(params), graph_(params.graph) {
+  params.Validate();
+}
+
+bool TrackMap::IsKeyframe(const Pose2& T_last_base) const {
+  return T_last_base.position().norm() >= params_.keyframe_distance ||
+         std::abs(T_last_base.yaw) >= params_.keyframe_angle;
+}
+
+TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion) {
+  KeyframeRecord keyframe{map.utime,         map.epoch, map.T_local_base, {}, motion.T_from_to,
+                          motion.covariance, {}};
+  if (!empty()) keyframe.T_map_base = last_pose() * motion.T_from_to;
+  table_.Follow(map);
+  keyframe.sightings = Associate(map, keyframe.T_map_base);
+  Apply(keyframe);
+  Step step;
+  step.solved = SolveAfterKeyframe();
+  keyframe.T_map_base = last_pose();
+  last_ = keyframe;
+  step.records.emplace_back(keyframe);
+  if (const auto removal = FindPhantoms(map.utime)) {
+    Apply(*removal);
+    step.records.emplace_back(*removal);
+  }
+  if (!closed_) TryToClose(step);
+  return step;
+}
+
+void TrackMap::Replay(const MapRecord& record) {
+  if (const auto* keyframe = std::get_if<KeyframeRecord>(&record)) {
+    Apply(*keyframe);
+    SolveAfterKeyframe();
+    last_->T_map_base = last_pose();
+  } else if (const auto* merge = std::get_if<MergeRecord>(&record)) {
+    Apply(*merge);
+    graph_.SolveAll();
+    Settle();
+  } else {
+    Apply(std::get<RemovalRecord>(record));
+  }
+}
+
+void TrackMap::Settle() {
+  if (empty()) return;
+  graph_.SolveAll();
+  covariances_ = graph_.LandmarkCovariances();
+  keyframes_since_full_ = 0;
+  if (closed_) SharpenCovariance(*last_);
+}
+
+void TrackMap::Apply(const KeyframeRecord& keyframe) {
+  const Motion motion{keyframe.T_before_base, keyframe.covariance};
+  if (!empty()) {
+    covariance_ = Propagate(covariance_, last_pose(), motion);
+    graph_.AddPose({motion.T_from_to, SqrtInformation(motion.covariance)});
+    odometer_ += motion.T_from_to.position().norm();
+  }
+  const Pose2 T_map_base = last_pose();
+  for (const SightingRecord& sighting : keyframe.sightings) {
+    const bool is_new = static_cast<size_t>(sighting.landmark) == graph_.num_landmarks();
+    if (is_new) graph_.AddLandmark(keyframe.T_map_base * sighting.position);
+    graph_.AddSighting(static_cast<size_t>(sighting.landmark),
+                       {sighting.position, SqrtInformation(sighting.covariance)});
+    if (!is_new) continue;
+    covariances_.resize(graph_.num_landmarks(), Eigen::Matrix2d::Zero());
+    covariances_.back() = PointCovariance(covariance_, T_map_base.rotation() * sighting.position) +
+                          RotateCovariance(sighting.covariance, T_map_base.yaw);
+  }
+  table_.Add(keyframe, odometer_);
+  last_ = keyframe;
+  if (closed_) SharpenCovariance(keyframe);
+  // Two at a time, so that a lap that was mapped before the loop closed is caught up with.
+  for (int i = 0; i < 2 && (closed_ ? graph_.num_poses() > params_.max_keyframes
+                                    : graph_.num_poses() > 4 * params_.max_keyframes);
+       ++i) {
+    graph_.MarginaliseOldest();
+  }
+}
+
+/// What the sightings of a known map say of the pose: an information update, landmarks being as
+/// uncertain as the last full solve left them.
+void TrackMap::SharpenCovariance(const KeyframeRecord& keyframe) {
+  Eigen::Matrix3d information = covariance_.inverse();
+  const double yaw = keyframe.T_map_base.yaw;
+  for (const SightingRecord& sighting : keyframe.sightings) {
+    const Eigen::Vector2d lever = Pose2{0.0, 0.0, yaw} * sighting.position;
+    Eigen::Matrix<double, 2, 3> J = Eigen::Matrix<double, 2, 3>::Zero();
+    J.leftCols<2>().setIdentity();
+    J(0, 2) = -lever.y();
+    J(1, 2) = lever.x();
+    const Eigen::Matrix2d noise = RotateCovariance(sighting.covariance, yaw) +
+                                  covariances_.at(static_cast<size_t>(sighting.landmark));
+    information += J.transpose() * noise.inverse() * J;
+  }
+  covariance_ = information.inverse();
+}
+
+void TrackMap::Apply(const MergeRecord& merge) {
+  for (const auto& [landmark, into] : merge.pairs) {
+    graph_.MergeLandmark(static_cast<size_t>(landmark), static_cast<size_t>(into));
+    table_.Merge(landmark, into);
+  }
+  closed_ = closed_ || merge.loop;
+}
+
+void TrackMap::Apply(const RemovalRecord& removal) {
+  for (const int64_t landmark : removal.landmarks) {
+    graph_.RemoveLandmark(static_cast<size_t>(landmark));
+    table_.Remove(landmark);
+  }
+}
+
+bool TrackMap::SolveAfterKeyframe() {
+  if (!closed_ || ++keyframes_since_full_ < params_.full_solve_keyframes)
+    return graph_.SolveWindow();
+  keyframes_since_full_ = 0;
+  return graph_.SolveAll();
+}
+
+std::vector<GlobalCone> TrackMap::Cones() const {
+  std::vector<GlobalCone> cones;
+  const auto& landmarks = table_.landmarks();
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    const LandmarkInfo& info = landmarks[i];
+    if (!info.alive || info.num_sightings < params_.min_sightings) continue;
+    cones.push_back({static_cast<int64_t>(i), graph_.landmark(i), covariances_[i],
+                     Normalised(info.colour_sum).value_or(kColourUnknown), info.num_observations});
+  }
+  return cones;
+}
+
+}  // namespace hairpin

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "daemons/global_mapper/constellation.hpp"
+#include "daemons/global_mapper/landmark_table.hpp"
+#include "daemons/global_mapper/map_estimate.hpp"
+#include "daemons/global_mapper/map_record.hpp"
+#include "daemons/global_mapper/odometry.hpp"
+#include "daemons/global_mapper/pose_landmark_graph.hpp"
+
+namespace hairpin {
+
+struct LoopParams {
+  ConstellationParams constellation;
+  double min_distance = 0.0;     // m driven before a loop is looked for, > 0
+  double recent_distance = 0.0;  // m driven: landmarks first seen since may be old ones, > 0
+  double search_radius = 0.0;    // m from the car within which old landmarks are looked at, > 0
+  double gate_chi2 = 0.0;        // of the correction, by the covariance of the motion since, > 0
+  double max_rmse = 0.0;         // m, of the merged landmarks' sightings after the solve, > 0
+  double same_cone = 0.0;        // m: nearer landmarks that were never seen together are one, > 0
+};
+
+struct TrackMapParams {
+  GraphParams graph;
+  ConeFilter filter;
+  double keyframe_distance = 0.0;   // m, > 0
+  double keyframe_angle = 0.0;      // rad, > 0
+  size_t max_keyframes = 0;         // more are marginalised, > graph.window_poses
+  size_t full_solve_keyframes = 0;  // between solves of everything once the loop is closed, > 0
+  size_t max_landmarks = 0;         // > 0
+  int min_sightings = 0;  // keyframes that must have seen a cone before it is published, > 0
+  double covariance_inflation =
+      0.0;                        // of a local cone's covariance, since filtered means repeat, >= 1
+  double cone_sigma = 0.0;        // m, > 0: what no covariance models
+  double association_gate = 0.0;  // m, > 0
+  double memory_distance = 0.0;   // m driven since last seen within which the gate is enough, > 0
+  LoopParams loop;
+
+  /// Throws std::invalid_argument naming parameter, relation and bound.
+  void Validate() const;
+};
+
+/// The map that is being made: keyframes and landmarks in a pose-landmark graph, data association,
+/// loop closure. [paper III-C, global map]
+///
+/// Made of MapRecords only. Observe() makes them; Replay() takes them, and is left with the same
+/// map.
+class TrackMap {
+ public:
+  explicit TrackMap(const TrackMapParams& params);
+
+  struct Step {
+    std::vector<MapRecord> records;  // what happened, in order
+    bool solved = true;              // false: the solver failed, the map stands as before
+  };
+  /// Adds a keyframe. `motion`: since the keyframe before; the first one's is not used.
+  Step Observe(const LocalMapInput& map, const Motion& motion);
+  /// Does what Observe() did when it made the record, so that the map comes out the same.
+  void Replay(const MapRecord& record);
+
+  bool empty() const { return !last_.has_value(); }
+  /// Newest keyframe; only where not empty.
+  const KeyframeRecord& last() const { return *last_; }
+  /// True if a map that is so far from the last keyframe is to become one.
+  bool IsKeyframe(const Pose2& T_last_base) const;
+  Pose2 last_pose() const { return graph_.newest_pose(); }
+  const Eigen::Matrix3d& last_covariance() const { return covariance_; }
+  bool loop_closed() const { return closed_; }
+  double odometer() const { return odometer_; }
+  /// Every cone seen often enough, by rising id.
+  std::vector<GlobalCone> Cones() const;
+  const PoseLandmarkGraph& graph() const { return graph_; }
+
+ private:
+  std::vector<SightingRecord> Associate(const LocalMapInput& map, const Pose2& T_map_base) const;
+  struct Candidate;
+  std::vector<Candidate> Candidates(const std::vector<const LocalMapCone*>& cones,
+                                    const Pose2& T_map_local) const;
+  SightingRecord ToSighting(const LocalMapCone& cone, const Pose2& T_local_base,
+                            int64_t landmark) const;
+  void Apply(const KeyframeRecord& keyframe);
+  void Apply(const MergeRecord& merge);
+  void Apply(const RemovalRecord& removal);
+  void SharpenCovariance(const KeyframeRecord& keyframe);
+  bool SolveAfterKeyframe();
+  void Settle();
+  std::optional<RemovalRecord> FindPhantoms(int64_t utime) const;
+  std::optional<MergeRecord> FindDoubles(int64_t utime) const;
+  std::optional<MergeRecord> FindLoop(int64_t utime) const;
+  std::vector<int64_t> Landmarks(bool recent) const;
+  std::vector<ConstellationPoint> Points(const std::vector<int64_t>& landmarks) const;
+  bool IsExplained(const std::vector<int64_t>& recent, const ConstellationMatch& match) const;
+  double CorrectionChi2(const Pose2& correction) const;
+  bool FitsAfterSolve(const MergeRecord& merge) const;
+  void TryToClose(Step& step);
+
+  TrackMapParams params_;
+  PoseLandmarkGraph graph_;
+  LandmarkTable table_;
+  std::optional<KeyframeRecord> last_;
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  // of the newest pose, map
+  std::vector<Eigen::Matrix2d> covariances_;              // of landmarks, at the last full solve
+  double odometer_ = 0.0;
+  bool closed_ = false;
+  size_t keyframes_since_full_ = 0;
+};
+
+}  // namespace hairpin

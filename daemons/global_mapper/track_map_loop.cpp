@@ -1,0 +1,129 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "daemons/global_mapper/track_map.hpp"
+
+namespace hairpin {
+namespace {
+
+constexpr double kMinExplained =
+    0.7;                              // share of the cones in known country that must be known ones
+constexpr double kChi2PerPair = 6.0;  // twice the logarithm of the odds that one more pair is worth
+constexpr Eigen::Index kPoseSize = 3;
+
+}  // namespace
+
+/// Those first seen lately, or those near the car not seen for long; by rising number.
+std::vector<int64_t> TrackMap::Landmarks(bool recent) const {
+  std::vector<int64_t> chosen;
+  const auto& landmarks = table_.landmarks();
+  for (size_t l = 0; l < landmarks.size(); ++l) {
+    const LandmarkInfo& info = landmarks[l];
+    if (!info.alive || info.num_sightings < params_.min_sightings) continue;
+    const bool is_recent = info.first_seen > odometer_ - params_.loop.recent_distance;
+    const bool is_old =
+        info.last_seen < odometer_ - params_.memory_distance &&
+        (graph_.landmark(l) - last_pose().position()).norm() <= params_.loop.search_radius;
+    if (recent ? is_recent : is_old) chosen.push_back(static_cast<int64_t>(l));
+  }
+  return chosen;
+}
+
+std::vector<ConstellationPoint> TrackMap::Points(const std::vector<int64_t>& landmarks) const {
+  std::vector<ConstellationPoint> points;
+  for (const int64_t l : landmarks) {
+    const auto index = static_cast<size_t>(l);
+    points.push_back({graph_.landmark(index), table_.landmarks()[index].colour()});
+  }
+  return points;
+}
+
+/// From the first cone on that is an old one, the car is in known country: most must be.
+bool TrackMap::IsExplained(const std::vector<int64_t>& recent,
+                           const ConstellationMatch& match) const {
+  size_t first = recent.size();
+  for (const auto& pair : match.pairs) first = std::min(first, pair.first);
+  const auto in_known_country = static_cast<double>(recent.size() - first);
+  return static_cast<double>(match.pairs.size()) >= kMinExplained * in_known_country;
+}
+
+/// Of a correction, by the covariance of the motion since the start: an upper bound of that since
+/// the old cones were seen.
+double TrackMap::CorrectionChi2(const Pose2& correction) const {
+  const Pose2 corrected = correction * last_pose();
+  Eigen::Matrix<double, kPoseSize, 1> shift;
+  shift << corrected.x - last_pose().x, corrected.y - last_pose().y, correction.yaw;
+  const double tolerance = params_.loop.constellation.tolerance;
+  Eigen::Matrix3d covariance = covariance_;
+  covariance.topLeftCorner<2, 2>() += tolerance * tolerance * Eigen::Matrix2d::Identity();
+  covariance(2, 2) += std::pow(tolerance / params_.filter.max_range, 2);
+  return shift.dot(covariance.ldlt().solve(shift));
+}
+
+std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
+  const std::vector<int64_t> recent = Landmarks(true);
+  const std::vector<int64_t> old = Landmarks(false);
+  const auto match =
+      MatchConstellation(Points(recent), Points(old), {}, params_.loop.constellation,
+                         [this](const Pose2& T) { return CorrectionChi2(T) / kChi2PerPair; });
+  if (!match || !IsExplained(recent, *match) ||
+      CorrectionChi2(match->T_to_from) > params_.loop.gate_chi2)
+    return std::nullopt;
+  // Only back at the start is the lap closed; elsewhere two stretches of the track come near each
+  // other.
+  const double to_start = (match->T_to_from * last_pose().position()).norm();
+  MergeRecord merge{utime, to_start <= params_.loop.search_radius, {}};
+  for (const auto& [from, to] : match->pairs) merge.pairs.emplace_back(recent[from], old[to]);
+  return merge;
+}
+
+bool TrackMap::FitsAfterSolve(const MergeRecord& merge) const {
+  double sum = 0.0;
+  for (const auto& [landmark, into] : merge.pairs) {
+    const auto rms = graph_.SightingRms(static_cast<size_t>(into), graph_.first_pose());
+    sum += rms ? *rms * *rms : 0.0;
+  }
+  return std::sqrt(sum / static_cast<double>(merge.pairs.size())) <= params_.loop.max_rmse;
+}
+
+/// Landmarks that stand in one place and were never seen side by side.
+std::optional<MergeRecord> TrackMap::FindDoubles(int64_t utime) const {
+  MergeRecord merge{utime, false, {}};
+  std::vector<bool> gone(table_.landmarks().size(), false);
+  for (size_t a = 0; a < gone.size(); ++a) {
+    for (size_t b = a + 1; b < gone.size(); ++b) {
+      const auto& landmarks = table_.landmarks();
+      if (gone[a] || gone[b] || !landmarks[a].alive || !landmarks[b].alive) continue;
+      if ((graph_.landmark(a) - graph_.landmark(b)).norm() > params_.loop.same_cone) continue;
+      if (!AreCompatible(landmarks[a].colour(), landmarks[b].colour())) continue;
+      if (graph_.SeenTogether(a, b)) continue;
+      gone[b] = true;
+      merge.pairs.emplace_back(static_cast<int64_t>(b), static_cast<int64_t>(a));
+    }
+  }
+  if (merge.pairs.empty()) return std::nullopt;
+  return merge;
+}
+
+void TrackMap::TryToClose(Step& step) {
+  if (odometer_ < params_.loop.min_distance) return;
+  const auto loop = FindLoop(last_->utime);
+  if (!loop) return;
+  const TrackMap before = *this;
+  Apply(*loop);
+  step.solved = graph_.SolveAll();
+  if (!step.solved || !FitsAfterSolve(*loop)) {
+    *this = before;
+    return;
+  }
+  step.records.emplace_back(*loop);
+  if (const auto doubles = FindDoubles(last_->utime)) {
+    Apply(*doubles);
+    step.records.emplace_back(*doubles);
+  }
+  Settle();
+  last_->T_map_base = last_pose();
+}
+
+}  // namespace hairpin

@@ -1,0 +1,125 @@
+#include "daemons/gnss_driver/gnss_driver_node.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <stdexcept>
+
+#include "common/geometry.hpp"
+
+namespace hairpin {
+namespace {
+
+constexpr int64_t kRetryPeriod = 1'000'000;  // us
+constexpr int kReadsPerPoll = 16;            // a receiver that floods must not hold up the rest
+
+GnssErrorModel LoadErrors(const Config& config) {
+  return {.single_m = config.Number("single_m", {0.1, 100.0}),
+          .differential_m = config.Number("differential_m", {0.1, 100.0}),
+          .float_m = config.Number("float_m", {0.01, 100.0}),
+          .rtk_m = config.Number("rtk_m", {0.001, 10.0}),
+          .vertical_factor = config.Number("vertical_factor", {0.1, 10.0}),
+          .velocity_mps = config.Number("velocity_mps", {0.001, 10.0}),
+          .heading_rad = config.Number("heading_rad", {1e-4, 1.0})};
+}
+
+gnss_t ToMessage(const GnssFix& fix, const Eigen::Vector3d& position, double baseline_yaw) {
+  gnss_t message{};
+  message.utime = fix.utime;
+  message.fix = static_cast<int32_t>(fix.type);
+  for (int i = 0; i < 3; ++i) {
+    message.position_enu_m[i] = position[i];
+    message.position_sigma_m[i] = fix.position_sigma[i];
+    message.velocity_enu_mps[i] = fix.velocity[i];
+    message.velocity_sigma_mps[i] = fix.velocity_sigma[i];
+  }
+  message.heading_valid = fix.heading.has_value();
+  message.heading_rad = fix.heading ? WrapAngle(*fix.heading - baseline_yaw) : 0.0;
+  message.heading_sigma_rad = fix.heading_sigma;
+  return message;
+}
+
+}  // namespace
+
+GnssDriverParams LoadGnssDriverParams(const Config& config) {
+  GnssDriverParams params;
+  params.port = config.Text("port");
+  params.baud_rate = config.Integer("baud_rate", 9600, 921600);
+  const Config origin = config.Section("origin");
+  params.origin_is_first_fix = origin.Flag("is_first_fix");
+  params.origin = {origin.Number("latitude_deg", {-90.0, 90.0}),
+                   origin.Number("longitude_deg", {-180.0, 180.0}),
+                   origin.Number("height_m", {-500.0, 9000.0})};
+  params.antenna_baseline_yaw = config.Number("antenna_baseline_yaw_rad", {-3.15, 3.15});
+  params.errors = LoadErrors(config.Section("errors"));
+  config.Finish();
+  if (!SerialPort::IsBaudRate(params.baud_rate))
+    throw ConfigError("gnss_driver.yaml: baud_rate: " + std::to_string(params.baud_rate) +
+                      " is none that a serial port has");
+  return params;
+}
+
+GnssDriverNode::GnssDriverNode(const GnssDriverParams& params, Bus& bus, const Clock& clock)
+    : params_(params), bus_(bus), clock_(clock), decoder_(params.errors) {
+  if (!params.origin_is_first_fix) plane_.emplace(params.origin);
+  TryToOpen();
+}
+
+std::vector<int> GnssDriverNode::descriptors() const {
+  return port_ ? std::vector<int>{port_->descriptor()} : std::vector<int>{};
+}
+
+void GnssDriverNode::TryToOpen() {
+  const int64_t now = clock_.NowMicros();
+  if (last_try_ && now - *last_try_ < kRetryPeriod) return;
+  last_try_ = now;
+  try {
+    port_ = std::make_unique<SerialPort>(params_.port, params_.baud_rate);
+  } catch (const std::runtime_error& error) {
+    Warn(error.what());
+  }
+}
+
+void GnssDriverNode::Poll() {
+  if (!port_) TryToOpen();
+  std::array<uint8_t, 1024> buffer;
+  for (int i = 0; port_ && i < kReadsPerPoll; ++i) {
+    try {
+      const size_t count = port_->Read(buffer);
+      if (count == 0) break;
+      for (const GnssFix& fix : decoder_.Add(Bytes(buffer).first(count))) Publish(fix);
+    } catch (const std::runtime_error& error) {
+      Warn(error.what());
+      port_.reset();
+    }
+  }
+  ReportBad();
+}
+
+void GnssDriverNode::Publish(const GnssFix& fix) {
+  const bool has_position = fix.type != FixType::kNone && fix.type != FixType::kUnknown;
+  if (has_position && !plane_) plane_.emplace(fix.position);
+  const Eigen::Vector3d position =
+      has_position ? plane_->ToEnu(fix.position) : Eigen::Vector3d::Zero();
+  gnss_t message = ToMessage(fix, position, params_.antenna_baseline_yaw);
+  // A receiver without a velocity has no fix as far as the estimator goes.
+  if (!fix.has_velocity) message.fix = gnss_t::FIX_NONE;
+  bus_.Publish(channels::kGnss, message);
+}
+
+void GnssDriverNode::ReportBad() {
+  for (const auto& [why, count] : decoder_.bad()) {
+    if (reported_[why] != count) Warn(why + " (" + std::to_string(count) + " so far)");
+    reported_[why] = count;
+  }
+}
+
+// At most once a second, the first of what is wrong.
+void GnssDriverNode::Warn(const std::string& why) {
+  const int64_t now = clock_.NowMicros();
+  if (last_warning_ && now - *last_warning_ < kRetryPeriod) return;
+  last_warning_ = now;
+  std::cerr << bus_.daemon() << ": " << params_.port << ": " << why << '\n';
+}
+
+}  // namespace hairpin

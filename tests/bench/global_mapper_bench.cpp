@@ -1,0 +1,71 @@
+// Batch and per-update times of the graph on a synthetic lap: 300 m, 150 cones, 600 poses, 12,300
+// sightings, odometry sigma 0.02 m and 0.004 rad, sighting sigma 0.1 m; and on ten such laps.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "daemons/global_mapper/global_mapper_node.hpp"
+#include "tests/support/synthetic_lap.hpp"
+
+namespace hairpin {
+namespace {
+
+GraphParams Params() {
+  const Config config = Config::Load(std::string(HAIRPIN_SOURCE_DIR) + "/config", "global_mapper");
+  return LoadGlobalMapperConfig(config).params.map.graph;
+}
+
+void Batch(benchmark::State& state) {
+  const SyntheticLap lap(1);
+  SyntheticLapDriver driver(Params(), lap.poses()[0]);
+  for (size_t i = 0; i < lap.steps().size(); ++i) driver.Add(lap.steps()[i], i == 0);
+  for (auto _ : state) {
+    state.PauseTiming();
+    PoseLandmarkGraph graph = driver.graph();
+    state.ResumeTiming();
+    if (!graph.SolveAll()) state.SkipWithError("the solver failed");
+  }
+}
+BENCHMARK(Batch)->Unit(benchmark::kMillisecond);
+
+/// Drives laps pose by pose as TrackMap does: a window each, everything where the loop closes and
+/// each 200 poses from then on, the oldest marginalised beyond 600. Counters: milliseconds per
+/// pose.
+void Laps(benchmark::State& state) {
+  const int laps = static_cast<int>(state.range(0));
+  const SyntheticLap lap(1, laps);
+  for (auto _ : state) {
+    SyntheticLapDriver driver(Params(), lap.poses()[0]);
+    std::vector<double> ms;
+    for (size_t i = 0; i < lap.steps().size(); ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      driver.Add(lap.steps()[i], i == 0);
+      const bool closed = i >= SyntheticLap::kPoses;
+      if (closed && i % 200 == 0) {
+        driver.graph().SolveAll();
+      } else {
+        driver.graph().SolveWindow();
+      }
+      for (int k = 0; k < 2 && closed && driver.graph().num_poses() > SyntheticLap::kPoses; ++k)
+        driver.graph().MarginaliseOldest();
+      const std::chrono::duration<double, std::milli> time =
+          std::chrono::steady_clock::now() - start;
+      ms.push_back(time.count());
+    }
+    std::vector<double> last(ms.end() - SyntheticLap::kPoses, ms.end());
+    const auto tail = last.end() - SyntheticLap::kPoses / 10;
+    state.counters["last_tenth_ms"] =
+        std::accumulate(tail, last.end(), 0.0) / (SyntheticLap::kPoses / 10);
+    state.counters["lap_mean_ms"] =
+        std::accumulate(last.begin(), last.end(), 0.0) / SyntheticLap::kPoses;
+    std::sort(last.begin(), last.end());
+    state.counters["p99_ms"] = last[SyntheticLap::kPoses * 99 / 100];
+    state.counters["max_ms"] = last.back();
+  }
+}
+BENCHMARK(Laps)->Arg(1)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+}  // namespace
+}  // namespace hairpin

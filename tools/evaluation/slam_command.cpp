@@ -1,0 +1,54 @@
+#include <memory>
+
+#include "daemons/global_mapper/global_mapper_node.hpp"
+#include "tools/evaluation/commands.hpp"
+#include "tools/evaluation/figures.hpp"
+#include "tools/evaluation/slam_evaluation.hpp"
+
+namespace hairpin {
+namespace {
+
+struct SlamOptions {
+  std::string file;
+  std::string config_dir = "config";
+  std::string noise = "information";
+  int full_solve_steps = 200;
+  bool json = false;
+};
+
+void Run(const SlamOptions& options) {
+  const Config config = Config::Load(options.config_dir, "global_mapper");
+  GraphParams params = LoadGlobalMapperConfig(config).params.map.graph;
+  params.window.loss_scale = params.full.loss_scale = 0.0;  // the associations are true
+  const auto reading =
+      options.noise == "covariance" ? NoiseReading::kCovariance : NoiseReading::kInformation;
+  const SlamDataset dataset = LoadSlamDataset(options.file, reading);
+  nlohmann::json figures = ToJson(EvaluateSlam(dataset, params, options.full_solve_steps));
+  figures["landmarks"] = dataset.num_landmarks;
+  figures["noise_read_as"] = options.noise;
+  PrintFigures(figures, options.json);
+}
+
+}  // namespace
+
+void AddSlamCommand(CLI::App& app) {
+  CLI::App* slam = app.add_subcommand(
+      "slam", "global_mapper's graph driven through a landmark-SLAM benchmark, step by step");
+  const auto options = std::make_shared<SlamOptions>();
+  slam->add_option("--victoria", options->file, "the dataset, in the format of victoria_park.txt")
+      ->required();
+  slam->add_option("--noise", options->noise, "what the file's noise figures are")
+      ->check(CLI::IsMember({"information", "covariance"}))
+      ->capture_default_str();
+  slam->add_option("--full-solve-steps", options->full_solve_steps,
+                   "steps between two solves of everything where no loop closes")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  slam->add_option("--config-dir", options->config_dir, "folder of the .yaml files")
+      ->envname("HAIRPIN_CONFIG_DIR")
+      ->capture_default_str();
+  slam->add_flag("--json", options->json, "print one JSON object");
+  slam->callback([options] { Run(*options); });
+}
+
+}  // namespace hairpin
