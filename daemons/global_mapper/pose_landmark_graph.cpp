@@ -38,11 +38,6 @@ size_t PoseLandmarkGraph::AddPose(const OdometryMeasurement& odometry) {
   return end_pose() - 1;
 }
 
-void PoseLandmarkGraph::MoveNewest(const Pose2& T_map_base) {
-  auto& x = poses_.back().x;
-  x = {T_map_base.x, T_map_base.y, x[2] + WrapAngle(T_map_base.yaw - x[2])};
-}
-
 size_t PoseLandmarkGraph::AddLandmark(const Eigen::Vector2d& position) {
   landmarks_.push_back({{position.x(), position.y()}});
   return landmarks_.size() - 1;

@@ -38,8 +38,6 @@ class PoseLandmarkGraph {
   size_t AddPose(const OdometryMeasurement& odometry);
   /// Returns its number, which stays.
   size_t AddLandmark(const Eigen::Vector2d& position);
-  /// Puts the newest pose elsewhere, as a start for the next solve.
-  void MoveNewest(const Pose2& T_map_base);
   /// From the newest pose. Throws std::invalid_argument for an unknown landmark.
   void AddSighting(size_t landmark, const LandmarkMeasurement& measurement);
   /// The two are the same: all sightings of `landmark` become sightings of `into`.

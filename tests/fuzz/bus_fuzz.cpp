@@ -55,7 +55,12 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size < 2) return 0;
-  int index = data[0] % 18;
+  static const int num_channels = [] {
+    int count = 0;
+    hairpin::ForEachChannel([&count](const auto&) { ++count; });
+    return count;
+  }();
+  int index = data[0] % num_channels;
   hairpin::ForEachChannel([&](const auto& channel) {
     if (index-- == 0) Deliver(channel, data[1] % 4 != 0, data + 2, size - 2);
   });
