@@ -77,6 +77,7 @@ void Simulator::SetSource(const std::string& source, bool on) {
 void Simulator::Step() {
   if (++tick_ > 0) Advance();
   utime_ = AddSeconds(utime_, kTick);
+  if (moved_listener_) moved_listener_();
   RefereeInput input;
   input.utime = utime_;
   input.driving = actuators_.state() == as_state_t::STATE_DRIVING;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -35,6 +36,10 @@ class Simulator {
   /// One tick of 10 ms: the last commands act on the car, then the sensors publish, IMU last. The
   /// first tick publishes the car as it stands, at kFirstUtime.
   void Step();
+
+  /// Calls `listener` in each Step(), once the car has moved and before anything is published: for
+  /// sensors outside, whose data of a tick must be out before the IMU's message ends it.
+  void OnMoved(std::function<void()> listener) { moved_listener_ = std::move(listener); }
 
   /// Time of the last tick; kFirstUtime less one tick before the first.
   int64_t utime() const { return utime_; }
@@ -85,6 +90,7 @@ class Simulator {
   Referee referee_;
   RaceControl race_control_;
   std::map<std::string, bool> sources_;
+  std::function<void()> moved_listener_;
 };
 
 }  // namespace hairpin
