@@ -42,7 +42,7 @@ bool Bus::HasFingerprint(const uint8_t* data, size_t size, int64_t fingerprint) 
 bool Bus::Accept(Subscription& subscription, int64_t utime, int64_t boot_id, int64_t sequence) {
   if (!IsPlausible(subscription, utime)) {
     ++subscription.health.implausible_time;
-    Warn(subscription, "time " + std::to_string(utime) + " cannot be");
+    Warn(subscription, "dropped: time " + std::to_string(utime) + " cannot be");
     return false;
   }
   if (IsDuplicate(subscription, boot_id, sequence)) {
@@ -102,7 +102,7 @@ bool Bus::IsDuplicate(Subscription& subscription, int64_t boot_id, int64_t seque
 
 void Bus::CountUndecodable(Subscription& subscription, const std::string& why) {
   ++subscription.health.undecodable;
-  Warn(subscription, why);
+  Warn(subscription, "dropped: " + why);
 }
 
 void Bus::Refuse(const std::string& channel, const std::string& why) {
@@ -110,7 +110,7 @@ void Bus::Refuse(const std::string& channel, const std::string& why) {
   if (found == subscriptions_.end())
     throw std::logic_error(daemon_ + " refuses a message of " + channel + ", not subscribed");
   ++found->second->health.refused;
-  Warn(*found->second, why);
+  Warn(*found->second, "dropped: " + why);
 }
 
 channel_health_t& Bus::AddInput(const std::string& name) {
@@ -129,7 +129,7 @@ void Bus::Warn(Subscription& subscription, const std::string& why) {
   const bool first = subscription.last_warning_utime == 0;
   if (!first && SecondsBetween(subscription.last_warning_utime, newest_utime_) < 1.0) return;
   subscription.last_warning_utime = std::max<int64_t>(newest_utime_, 1);
-  std::cerr << daemon_ << ": " << subscription.health.channel << ": dropped: " << why << '\n';
+  std::cerr << daemon_ << ": " << subscription.health.channel << ": " << why << '\n';
 }
 
 void Bus::AdvanceDataTime(int64_t utime) {

@@ -66,7 +66,7 @@ void PackPoints(std::span<const LidarPoint> points, lidar_scan_t& scan) {
   for (const LidarPoint& point : points) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto steps = Steps<int16_t>(point.position[axis], per_metre, "coordinate");
-      Write(bytes + 2 * axis, static_cast<uint16_t>(steps));
+      Write(bytes + ptrdiff_t{2} * axis, static_cast<uint16_t>(steps));
     }
     bytes[6] = point.intensity;
     bytes[7] = point.ring;

@@ -158,7 +158,6 @@ void GlobalMapper::Replay(const std::vector<MapRecord>& records) {
     CountLapsOfMap(was_closed, map_.last_pose(), map_.odometer());
   }
   if (map_.empty()) return;
-  map_.Settle();
   const KeyframeRecord& last = map_.last();
   keyframe_ = last_ = Seen{last.utime, last.epoch, last.T_local_base};
 }

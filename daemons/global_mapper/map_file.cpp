@@ -159,8 +159,8 @@ MapFile ParseMapFile(const std::string& text, const std::string& file) {
     throw MapFileError(file + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }
   const Reader reader(file);
-  reader.RequireKeys(
-      root, {"hairpin_map", "session", "utime", "laps", "start", "finish_line_m", "driven_m", "cones"});
+  reader.RequireKeys(root, {"hairpin_map", "session", "utime", "laps", "start", "finish_line_m",
+                            "driven_m", "cones"});
   if (reader.Value<int>(root["hairpin_map"], "hairpin_map") != kVersion)
     reader.Refuse(root["hairpin_map"], "another version of the format");
   MapFile map;

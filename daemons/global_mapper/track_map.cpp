@@ -88,10 +88,11 @@ TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion)
 void TrackMap::Replay(const MapRecord& record) {
   if (const auto* keyframe = std::get_if<KeyframeRecord>(&record)) {
     Apply(*keyframe);
-    graph_.MoveNewest(keyframe->T_map_base);
-    ++keyframes_since_full_;
+    SolveAfterKeyframe();
+    last_->T_map_base = last_pose();
   } else if (const auto* merge = std::get_if<MergeRecord>(&record)) {
     Apply(*merge);
+    graph_.SolveAll();
     Settle();
   } else {
     Apply(std::get<RemovalRecord>(record));

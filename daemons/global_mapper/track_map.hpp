@@ -59,9 +59,8 @@ class TrackMap {
   };
   /// Adds a keyframe. `motion`: since the keyframe before; the first one's is not used.
   Step Observe(const LocalMapInput& map, const Motion& motion);
-  /// Without the solves between: call Settle() after the last one.
+  /// Does what Observe() did when it made the record, so that the map comes out the same.
   void Replay(const MapRecord& record);
-  void Settle();
 
   bool empty() const { return !last_.has_value(); }
   /// Newest keyframe; only where not empty.
@@ -88,6 +87,7 @@ class TrackMap {
   void Apply(const RemovalRecord& removal);
   void SharpenCovariance(const KeyframeRecord& keyframe);
   bool SolveAfterKeyframe();
+  void Settle();
   std::optional<RemovalRecord> FindPhantoms(int64_t utime) const;
   std::optional<MergeRecord> FindDoubles(int64_t utime) const;
   std::optional<MergeRecord> FindLoop(int64_t utime) const;

@@ -57,8 +57,8 @@ void LidarDriverNode::CountRefused(const Refused& refused) {
   } else {
     ++health_.undecodable;
   }
-  bus_.WarnOfInput(kInput, refused.what + " (" + std::string(NameOf(refused.reason)) + ", " +
-                               std::to_string(of_this_kind) + " so far)");
+  bus_.WarnOfInput(kInput, "dropped: " + refused.what + " (" + std::string(NameOf(refused.reason)) +
+                               ", " + std::to_string(of_this_kind) + " so far)");
 }
 
 void LidarDriverNode::Publish(const Revolution& revolution) {

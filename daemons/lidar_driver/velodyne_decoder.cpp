@@ -57,7 +57,8 @@ std::vector<SinCos> MakeTable() {
 SinCos SinCosOf(float hundredths) {
   static const std::vector<SinCos> kTable = MakeTable();
   const float shifted = hundredths + static_cast<float>(kFullTurn);  // positive: rounds by cutting
-  const int nearest = static_cast<int>(shifted + 0.5f);
+  // Positive, and lround is a call.
+  const int nearest = static_cast<int>(shifted + 0.5f);  // NOLINT(bugprone-incorrect-roundings)
   const float rest =
       (shifted - static_cast<float>(nearest)) * static_cast<float>(1.0 / kHundredthsPerRadian);
   const SinCos entry = kTable[static_cast<size_t>(nearest % kFullTurn)];

@@ -30,19 +30,20 @@ struct RaceRun {
   std::string bytes;  // of the log file
 };
 
-/// One race in this process, as `tools/drive --in-process` runs it.
+/// One race in this process, as `tools/drive --in-process` runs it; `can`: with --can.
 inline RaceRun RunInProcess(const std::string& track_file, uint64_t seed,
                             const std::vector<std::string>& faults = {},
                             const std::vector<std::string>& overrides = {},
-                            SensorLevel level = SensorLevel::kCones) {
+                            SensorLevel level = SensorLevel::kCones, bool can = false) {
   const TemporaryFolder folder;
   RaceOptions options;
   options.track = LoadTrack(track_file);
   options.seed = seed;
   options.in_process = true;
+  options.can = can;
   options.speed = 0.0;
   for (const std::string& text : faults)
-    options.faults.push_back(ParseFault(text, FaultSources(level)));
+    options.faults.push_back(ParseFault(text, FaultSources(level, can)));
   options.stack.config_dir = std::string(HAIRPIN_SOURCE_DIR) + "/config";
   options.stack.overrides = overrides;
   options.stack.level = level;

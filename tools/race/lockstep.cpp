@@ -8,6 +8,7 @@ namespace {
 constexpr int64_t kPatience = 250'000;     // us of wall time
 constexpr int64_t kStatusPeriod = 20'000;  // us of data time between two PIPELINE_STATUS
 constexpr int kWaitMs = 10;
+constexpr int kShortWaitMs = 1;  // where what is waited for does not wake us
 // A scan is out when the next packet after its end has been handled, and its cones then; with a
 // LiDAR dead, the detector waits for it before it goes on with the other.
 constexpr int64_t kScanAge = 115'000;        // us: a revolution, and a tick and a packet
@@ -87,21 +88,25 @@ bool Lockstep::Answered(int64_t utime) const {
   });
 }
 
-void Lockstep::Await(int64_t utime) {
+void Lockstep::Await(int64_t utime, const std::function<bool()>& also) {
   transport_.Drain();
   const int64_t start = clock_.NowMicros();
-  while (!Answered(utime)) {
-    transport_.Handle(kWaitMs);
+  bool also_answered = also();
+  if (also_answered) also_silent_ = false;
+  while (!Answered(utime) || !(also_answered || also_silent_)) {
+    transport_.Handle(also_answered || also_silent_ ? kWaitMs : kShortWaitMs);
+    also_answered = also_answered || also();
     if (clock_.NowMicros() - start < kPatience) continue;
     ++missed_;
+    also_silent_ = !also_answered;
     for (auto& [channel, answer] : answers_)
       answer.silent = answer.silent || answer.newest < Wanted(channel, utime);
   }
 }
 
 bool Lockstep::AnyoneSilent() const {
-  return std::any_of(answers_.begin(), answers_.end(),
-                     [](const auto& entry) { return entry.second.silent; });
+  return also_silent_ || std::any_of(answers_.begin(), answers_.end(),
+                                     [](const auto& entry) { return entry.second.silent; });
 }
 
 }  // namespace hairpin

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -23,8 +24,9 @@ class Lockstep {
  public:
   Lockstep(Transport& transport, SensorLevel level);
 
-  /// Handles messages until the stack has answered the tick of time `utime`.
-  void Await(int64_t utime);
+  /// Handles messages until the stack has answered the tick of time `utime`, and `also()` is true:
+  /// an answer that comes another way, and is given up in the same manner.
+  void Await(int64_t utime, const std::function<bool()>& also);
   /// True if someone is not answering; the run then goes no faster than real time.
   bool AnyoneSilent() const;
   /// Waits missed so far.
@@ -45,6 +47,7 @@ class Lockstep {
   MonotonicClock clock_;
   Bus bus_;
   std::map<std::string, Answer> answers_;
+  bool also_silent_ = true;
   std::map<Pipeline, int64_t> observed_;
   int64_t vehicle_utime_ = 0;
   MapMode mode_ = MapMode::kUnknown;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <stdexcept>
 #include <thread>
 
+#include "common/can/cannelloni_port.hpp"
 #include "tools/race/lockstep.hpp"
 #include "tools/race/overrides.hpp"
 #include "tools/race/progress.hpp"
@@ -15,12 +18,17 @@
 namespace hairpin {
 namespace {
 
+constexpr const char* kCanGateway = "can_gateway";
+// In the race's own network namespace.
+constexpr const char* kCarAddress = "127.0.0.1:20000";
+constexpr const char* kGatewayAddress = "127.0.0.1:20001";
 constexpr double kStartPatience = 15.0;  // s of wall time until every daemon must have been heard
 
 /// Waits until simulated time may go on: never faster than `speed` times real time.
 class Pacer {
  public:
-  void Wait(double simulated_s, double speed) {
+  /// `meanwhile` is called each 10 ms.
+  void Wait(double simulated_s, double speed, const std::function<void()>& meanwhile) {
     const int64_t now = clock_.NowMicros();
     due_ = std::max(due_, now - kMaxLag);
     if (speed <= 0.0) {
@@ -28,10 +36,14 @@ class Pacer {
       return;
     }
     due_ += static_cast<int64_t>(simulated_s / speed * 1e6);
-    if (due_ > now) std::this_thread::sleep_for(std::chrono::microseconds(due_ - now));
+    for (int64_t left = due_ - now; left > 0; left = due_ - clock_.NowMicros()) {
+      std::this_thread::sleep_for(std::chrono::microseconds(std::min(left, kNap)));
+      meanwhile();
+    }
   }
 
  private:
+  static constexpr int64_t kNap = 10'000;      // us
   static constexpr int64_t kMaxLag = 100'000;  // us: what is lost beyond this is not caught up
   MonotonicClock clock_;
   int64_t due_ = 0;
@@ -40,8 +52,9 @@ class Pacer {
 /// Switches sources and daemons off and on, by the time since Go.
 class FaultInjector {
  public:
-  FaultInjector(const std::vector<Fault>& faults, SensorLevel level, Transport& transport)
-      : faults_(faults), level_(level), bus_(transport, "fault", 1) {
+  FaultInjector(const std::vector<Fault>& faults, std::vector<std::string> daemons,
+                Transport& transport)
+      : faults_(faults), daemons_(std::move(daemons)), bus_(transport, "fault", 1) {
     bus_.Subscribe(channels::kAsState, [this](const as_state_t& message) {
       if (message.state == as_state_t::STATE_DRIVING && !go_utime_) go_utime_ = message.utime;
     });
@@ -56,7 +69,7 @@ class FaultInjector {
     for (const auto& [source, is_off] : off) {
       if (is_off == off_[source]) continue;
       off_[source] = is_off;
-      if (Contains(StackDaemons(level_), source)) {
+      if (Contains(daemons_, source)) {
         stack.SetDaemon(source, !is_off);
       } else if (lidars != nullptr && Contains(LidarRig::Sources(), source)) {
         lidars->SetSource(source, !is_off);
@@ -72,7 +85,7 @@ class FaultInjector {
   }
 
   const std::vector<Fault>& faults_;
-  SensorLevel level_;
+  std::vector<std::string> daemons_;
   Bus bus_;
   std::optional<int64_t> go_utime_;
   std::map<std::string, bool> off_;
@@ -95,6 +108,28 @@ void AwaitDaemons(const std::vector<std::string>& daemons, Transport& transport,
       throw std::runtime_error("not heard within 15 s:" + names);
     }
   }
+}
+
+/// The car's end of the CAN bus; the gateway has the other.
+std::unique_ptr<CanPort> OpenCarPort(const RaceOptions& options, MemoryCanBus& memory,
+                                     const Clock& clock) {
+  if (!options.can) return nullptr;
+  if (options.in_process) return memory.Attach(clock);
+  return std::make_unique<CannelloniPort>(ParseUdpAddress(kCarAddress),
+                                          ParseUdpAddress(kGatewayAddress), clock);
+}
+
+StackOptions StackWith(const RaceOptions& options, MemoryCanBus& memory) {
+  StackOptions stack = options.stack;
+  if (!options.can) return stack;
+  stack.drivers.push_back(kCanGateway);
+  stack.can_bus = &memory;
+  const std::string prefix = std::string(kCanGateway) + ".";
+  for (const std::string& assignment :
+       {std::string("interface=cannelloni"), std::string("cannelloni_local=") + kGatewayAddress,
+        std::string("cannelloni_remote=") + kCarAddress})
+    stack.overrides.push_back(prefix + assignment);
+  return stack;
 }
 
 bool IsPipeline(const std::string& source) {
@@ -133,7 +168,7 @@ SimulatorConfig LoadSimulator(const StackOptions& options) {
 
 }  // namespace
 
-std::vector<std::string> FaultSources(SensorLevel level) {
+std::vector<std::string> FaultSources(SensorLevel level, bool can) {
   std::vector<std::string> sources = Simulator::Sources();
   if (level == SensorLevel::kRaw) {
     std::erase_if(sources, IsPipeline);
@@ -141,6 +176,7 @@ std::vector<std::string> FaultSources(SensorLevel level) {
   }
   const std::vector<std::string>& daemons = StackDaemons(level);
   sources.insert(sources.end(), daemons.begin(), daemons.end());
+  if (can) sources.push_back(kCanGateway);
   return sources;
 }
 
@@ -150,27 +186,32 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
   const SensorLevel level = options.stack.level;
   Recorder recorder(transport, options.log_file, options.log_scans);
   Progress progress(transport);
-  FaultInjector faults(options.faults, level, transport);
+  const MonotonicClock clock;
+  MemoryCanBus memory;
+  const std::unique_ptr<CanPort> can = OpenCarPort(options, memory, clock);
+  const StackOptions stack_options = StackWith(options, memory);
+  const std::vector<std::string> daemons = DaemonsOf(stack_options);
+  FaultInjector faults(options.faults, daemons, transport);
   std::optional<Lockstep> lockstep;
   std::unique_ptr<Stack> stack;
   if (options.in_process) {
-    stack = std::make_unique<InProcessStack>(options.stack, transport);
+    stack = std::make_unique<InProcessStack>(stack_options, transport);
   } else {
     if (options.attach) {
       stack = std::make_unique<AttachedStack>();
     } else {
-      stack = std::make_unique<ProcessStack>(options.stack, transport.url());
+      stack = std::make_unique<ProcessStack>(stack_options, transport.url());
     }
-    AwaitDaemons(StackDaemons(level), transport, *stack, stop);
+    AwaitDaemons(daemons, transport, *stack, stop);
     lockstep.emplace(transport, level);
   }
   Bus bus(transport, "simulator", 1);
-  Simulator simulator(config.params, config.car, options.track, options.seed, bus);
+  Simulator simulator(config.params, config.car, options.track, options.seed, bus, can.get());
   std::unique_ptr<LidarRig> lidars;
   if (level == SensorLevel::kRaw)
     lidars = MakeLidars(config.params.lidars, config.car, options, simulator, *stack);
+  const auto await_can = [&simulator] { return simulator.AwaitCan(); };
 
-  const MonotonicClock clock;
   const int64_t start_wall = clock.NowMicros();
   const int64_t start_utime = simulator.utime();
   Pacer pacer;
@@ -180,8 +221,9 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
     recorder.SetTime(before);
     simulator.Step();
     if (lockstep) {
-      lockstep->Await(before);
+      lockstep->Await(before, await_can);
     } else {
+      if (options.can) stack->Tend(simulator.utime());  // the gateway reads, and publishes
       transport.Drain();
     }
     stack->Tend(simulator.utime());
@@ -189,7 +231,7 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
     const bool waiting = lockstep && lockstep->AnyoneSilent();
     const double speed =
         waiting && (options.speed <= 0.0 || options.speed > 1.0) ? 1.0 : options.speed;
-    pacer.Wait(SecondsBetween(before, simulator.utime()), speed);
+    pacer.Wait(SecondsBetween(before, simulator.utime()), speed, await_can);
   }
   transport.Drain();
   progress.End();

@@ -19,6 +19,8 @@ struct RaceOptions {
   double speed = 1.0;   // at most this many times real time; 0: as fast as it goes
   std::vector<Fault> faults;
   StackOptions stack;
+  /// The simulated car speaks CAN, and can_gateway runs between it and the rest.
+  bool can = false;
   std::string log_file;
   bool log_scans = false;  // LIDAR_FRONT and LIDAR_TOP too: 12 MB a second
 };
@@ -32,7 +34,7 @@ struct RaceOutcome {
 };
 
 /// The sources that a fault may name: the simulator's, and the daemons.
-std::vector<std::string> FaultSources(SensorLevel level = SensorLevel::kCones);
+std::vector<std::string> FaultSources(SensorLevel level = SensorLevel::kCones, bool can = false);
 
 /// Runs simulator and stack until the race is over or `stop` becomes non-zero. Throws ConfigError,
 /// or std::runtime_error where a daemon cannot be kept alive.

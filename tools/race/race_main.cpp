@@ -24,6 +24,7 @@ struct Arguments {
   std::string map;  // file, for the trackdrive
   int laps = 0;     // 0: as many as the mission has
   bool in_process = false;
+  bool can = false;
   bool attach = false;
   std::string sensors = "cones";
   bool log_scans = false;
@@ -73,6 +74,8 @@ void Define(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--in-process", arguments.in_process,
                "all daemons in one process, on memq://; repeatable to the byte");
+  app.add_flag("--can", arguments.can,
+               "the car speaks CAN, and can_gateway runs between it and the rest");
   app.add_flag("--attach", arguments.attach,
                "drive with the daemons that run here already (systemd's) and their own configs")
       ->excludes("--in-process")
@@ -148,10 +151,11 @@ RaceOptions ToOptions(const Arguments& arguments, const Leg& leg) {
   options.in_process = arguments.in_process;
   options.attach = arguments.attach;
   options.speed = arguments.speed >= 0.0 ? arguments.speed : arguments.in_process ? 0.0 : 1.0;
+  options.can = arguments.can;
   options.log_scans = arguments.log_scans;
   const SensorLevel level = arguments.sensors == "raw" ? SensorLevel::kRaw : SensorLevel::kCones;
   const std::vector<std::string> sources =
-      arguments.attach ? Simulator::Sources() : FaultSources(level);
+      arguments.attach ? Simulator::Sources() : FaultSources(level, options.can);
   for (const std::string& text : leg.faults) options.faults.push_back(ParseFault(text, sources));
   // The map of this run belongs to this run; --set may say otherwise.
   std::vector<std::string> overrides{"global_mapper.files.directory=" + leg.out};

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/can/memory_can_bus.hpp"
 #include "common/clock.hpp"
 #include "common/daemon.hpp"
 
@@ -37,7 +38,14 @@ struct StackOptions {
   /// "daemon.key=value" in place of what the daemon's config file says.
   std::vector<std::string> overrides;
   SensorLevel level = SensorLevel::kCones;
+  /// Daemons besides those: the drivers of what the simulator sends by the sensors' own protocols.
+  std::vector<std::string> drivers{};
+  /// The bus of can_gateway where all run in one process; must outlive the stack.
+  MemoryCanBus* can_bus = nullptr;
 };
+
+/// StackDaemons() and the drivers.
+std::vector<std::string> DaemonsOf(const StackOptions& options);
 
 /// The daemons as a whole, whichever way they run.
 class Stack {

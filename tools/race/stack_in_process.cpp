@@ -1,4 +1,5 @@
 #include "daemons/boundary_estimator/boundary_estimator_node.hpp"
+#include "daemons/can_gateway/can_gateway_node.hpp"
 #include "daemons/global_mapper/global_mapper_node.hpp"
 #include "daemons/lidar_cone_detector/lidar_cone_detector_node.hpp"
 #include "daemons/lidar_driver/lidar_driver_node.hpp"
@@ -40,7 +41,8 @@ NodeFactory HostDriver(const std::string& instance, Drivers& drivers) {
   });
 }
 
-std::map<std::string, NodeFactory> Factories(const Clock& clock, Drivers& drivers) {
+std::map<std::string, NodeFactory> Factories(const Clock& clock, Drivers& drivers,
+                                             MemoryCanBus* can_bus) {
   return {
       {"lidar_driver_front", HostDriver("front", drivers)},
       {"lidar_driver_top", HostDriver("top", drivers)},
@@ -68,6 +70,10 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock, Drivers& driver
       {"watchdog", Host([&clock](Bus& bus, const Config& config) {
          return WatchdogNode(LoadWatchdogParams(config), bus, clock);
        })},
+      {"can_gateway", Host([&clock, can_bus](Bus& bus, const Config& config) {
+         return CanGatewayNode(LoadCanGatewayConfig(config).gateway, bus, can_bus->Attach(clock),
+                               clock);
+       })},
   };
 }
 
@@ -91,9 +97,17 @@ DaemonProgram ProgramOf(const std::string& daemon) {
   return {daemon, ""};
 }
 
+std::vector<std::string> DaemonsOf(const StackOptions& options) {
+  std::vector<std::string> names = StackDaemons(options.level);
+  names.insert(names.end(), options.drivers.begin(), options.drivers.end());
+  return names;
+}
+
 InProcessStack::InProcessStack(const StackOptions& options, Transport& transport)
-    : options_(options), transport_(transport), factories_(Factories(clock_, drivers_)) {
-  for (const std::string& name : StackDaemons(options_.level)) SetDaemon(name, true);
+    : options_(options),
+      transport_(transport),
+      factories_(Factories(clock_, drivers_, options.can_bus)) {
+  for (const std::string& name : DaemonsOf(options_)) SetDaemon(name, true);
 }
 
 void InProcessStack::SetDaemon(const std::string& name, bool on) {
@@ -120,7 +134,7 @@ void InProcessStack::SetDaemon(const std::string& name, bool on) {
 
 void InProcessStack::Tend(int64_t utime) {
   clock_.Set(utime);
-  for (const std::string& name : StackDaemons(options_.level)) {
+  for (const std::string& name : DaemonsOf(options_)) {
     if (const auto member = members_.find(name); member != members_.end())
       member->second.node->Poll();
   }

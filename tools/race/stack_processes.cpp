@@ -63,7 +63,7 @@ ProcessStack::ProcessStack(const StackOptions& options, const std::string& lcm_u
     sender_ = std::make_unique<PacketSender>(
         Config::Load(options.config_dir, program, OverridesOf(program, options.overrides)));
   }
-  for (const std::string& name : StackDaemons(options.level)) Start(name, processes_[name]);
+  for (const std::string& name : DaemonsOf(options)) Start(name, processes_[name]);
 }
 
 ProcessStack::~ProcessStack() {

@@ -66,16 +66,15 @@ void Actuators::Emergency(const std::string& why) {
 
 void Actuators::Watch(int64_t now) {
   if (state_.state == as_state_t::STATE_EMERGENCY) Emergency("AS Emergency: " + state_.reason);
-  deadman_ = Deadman::kFresh;
+  deadman_ = DeadmanStage::kFresh;
   if (state_.state != as_state_t::STATE_DRIVING) return;
   if (SecondsBetween(state_.utime, now) > params_.state_timeout_s) Emergency("AS_STATE has ceased");
   // Before the first command of this drive, its age counts from the state's change.
-  const double age = SecondsBetween(std::max(command_utime_, driving_since_), now);
-  if (age > params_.emergency_after_s) Emergency("commands have ceased");
-  if (age > params_.hold_after_s) {
-    deadman_ = age > params_.brake_after_s ? Deadman::kBraking : Deadman::kHeld;
-    ++held_;
-  }
+  const int64_t since = std::max(command_utime_, driving_since_);
+  deadman_ = StageAt(SecondsBetween(since, now),
+                     {params_.hold_after_s, params_.brake_after_s, params_.emergency_after_s});
+  if (deadman_ == DeadmanStage::kSilent) Emergency("commands have ceased");
+  if (deadman_ != DeadmanStage::kFresh) ++held_;
 }
 
 VehicleInput Actuators::Act(int64_t now, double steering_angle) {
@@ -95,7 +94,7 @@ VehicleInput Actuators::Act(int64_t now, double steering_angle) {
 
 VehicleInput Actuators::Drive() {
   VehicleInput input = command_;
-  if (deadman_ == Deadman::kBraking) {
+  if (deadman_ >= DeadmanStage::kNeutral) {
     input.wheel_torque.fill(0.0);
     input.brake = std::max(params_.deadman_brake, command_.brake);
   }

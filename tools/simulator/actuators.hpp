@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "common/can/deadman.hpp"
 #include "common/car.hpp"
 #include "hairpin/as_state_t.hpp"
 #include "hairpin/drive_command_t.hpp"
@@ -24,8 +25,6 @@ struct ActuatorParams {
 /// 50/100/200 ms]. Time is simulated time.
 class Actuators {
  public:
-  enum class Deadman { kFresh, kHeld, kBraking };
-
   /// Throws std::invalid_argument for values that cannot be.
   Actuators(const ActuatorParams& params, const Car& car);
 
@@ -36,13 +35,15 @@ class Actuators {
   std::string OnState(const as_state_t& state, int64_t now);
   /// Remote emergency stop: opens the circuit, for good.
   void StopByRes();
+  /// Anything else that opens it.
+  void OpenCircuit(const std::string& why) { Emergency(why); }
 
   /// What the actuators do at `now`, for wheels that stand at `steering_angle` [rad].
   VehicleInput Act(int64_t now, double steering_angle);
 
   int32_t state() const { return state_.state; }
   bool mission_finished() const { return state_.mission_finished; }
-  Deadman deadman() const { return deadman_; }
+  DeadmanStage deadman() const { return deadman_; }
   /// Times that a fresh command was missing.
   int64_t held() const { return held_; }
   bool ebs_activated() const { return ebs_activated_; }
@@ -63,7 +64,7 @@ class Actuators {
   int64_t command_utime_ = 0;
   as_state_t state_{};
   int64_t driving_since_ = 0;
-  Deadman deadman_ = Deadman::kFresh;
+  DeadmanStage deadman_ = DeadmanStage::kFresh;
   int64_t held_ = 0;
   bool ebs_activated_ = false;
   bool res_stop_ = false;

@@ -27,7 +27,7 @@ int Ticks(double duration) { return static_cast<int>(std::lround(duration / Simu
 }  // namespace
 
 Simulator::Simulator(const SimulatorParams& params, const Car& car, const Track& track,
-                     uint64_t seed, Bus& bus)
+                     uint64_t seed, Bus& bus, CanPort* can)
     : params_(params),
       track_(track),
       seed_(seed),
@@ -48,6 +48,11 @@ Simulator::Simulator(const SimulatorParams& params, const Car& car, const Track&
   add("lidar", channels::kConesLidar, params.lidar);
   add("camera", channels::kConesCamera, params.camera);
   for (const std::string& source : Sources()) sources_[source] = true;
+  if (can != nullptr) can_.emplace(*can);
+  if (!can_) ListenToCommands();
+}
+
+void Simulator::ListenToCommands() {
   bus_.Subscribe(channels::kDriveCommand, [this](const drive_command_t& command) {
     const std::string problem = actuators_.OnCommand(command, utime_);
     if (!problem.empty()) bus_.Refuse(channels::kDriveCommand, problem);
@@ -75,9 +80,11 @@ void Simulator::SetSource(const std::string& source, bool on) {
 }
 
 void Simulator::Step() {
+  if (can_) can_->Receive(actuators_, utime_);
   if (++tick_ > 0) Advance();
   utime_ = AddSeconds(utime_, kTick);
   if (moved_listener_) moved_listener_();
+  if (can_) can_->Begin(utime_);
   RefereeInput input;
   input.utime = utime_;
   input.driving = actuators_.state() == as_state_t::STATE_DRIVING;
@@ -89,6 +96,20 @@ void Simulator::Step() {
   if (tick_ % Period(channels::kVehicle) == 0) PublishVehicle();
   for (PipelineRun& pipeline : pipelines_) PublishCones(pipeline);
   PublishMotion();
+  if (can_) can_->Flush();
+}
+
+bool Simulator::AwaitCan() {
+  if (!can_) return true;
+  can_->Receive(actuators_, utime_);
+  can_->RepeatTime();
+  return can_->command_utime() >= utime_ && can_->state_utime() >= vehicle_utime_;
+}
+
+template <class M>
+void Simulator::PublishMeasured(const Channel<M>& channel, const M& message) {
+  if (can_) return can_->Add(message);
+  bus_.Publish(channel, message);
 }
 
 void Simulator::Advance() {
@@ -116,18 +137,21 @@ void Simulator::PublishMotion() {
   const steering_t steering = motion_.Steering(utime_, state);
   const ground_speed_t ground_speed = motion_.GroundSpeed(utime_, state);
   const imu_t imu = motion_.Imu(utime_, state, PeriodSeconds(channels::kImu));
-  if (IsOn("wheels")) bus_.Publish(channels::kMotors, motors);
-  if (IsOn("steering")) bus_.Publish(channels::kSteering, steering);
-  if (IsOn("ground_speed")) bus_.Publish(channels::kGroundSpeed, ground_speed);
+  if (IsOn("wheels")) PublishMeasured(channels::kMotors, motors);
+  if (IsOn("steering")) PublishMeasured(channels::kSteering, steering);
+  if (IsOn("ground_speed")) PublishMeasured(channels::kGroundSpeed, ground_speed);
   if (tick_ % Period(channels::kGnss) == 0) {
     const gnss_t gnss = motion_.Gnss(utime_, state, PeriodSeconds(channels::kGnss));
     if (IsOn("gnss")) bus_.Publish(channels::kGnss, gnss);
   }
-  if (IsOn("imu")) bus_.Publish(channels::kImu, imu);
+  if (IsOn("imu")) PublishMeasured(channels::kImu, imu);
 }
 
 void Simulator::PublishVehicle() {
-  bus_.Publish(channels::kVehicle, race_control_.Vehicle(utime_, actuators_, vehicle_.state()));
+  const vehicle_t vehicle = race_control_.Vehicle(utime_, actuators_, vehicle_.state());
+  vehicle_utime_ = utime_;
+  if (can_) return can_->Add(vehicle, vehicle_.state().brake);
+  bus_.Publish(channels::kVehicle, vehicle);
 }
 
 void Simulator::PublishTruth() {

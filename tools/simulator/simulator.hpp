@@ -4,12 +4,15 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/bus.hpp"
+#include "common/can/can_port.hpp"
 #include "common/car.hpp"
 #include "tools/simulator/actuators.hpp"
+#include "tools/simulator/can_car.hpp"
 #include "tools/simulator/cone_sensor.hpp"
 #include "tools/simulator/motion_sensors.hpp"
 #include "tools/simulator/race_control.hpp"
@@ -21,17 +24,18 @@
 namespace hairpin {
 
 /// The car, its sensors and the race around it, on a bus: publishes what drivers, perception and
-/// the CAN gateway would, listens to DRIVE_COMMAND and AS_STATE. Advances by Step() only, so that
-/// simulated time can wait for the stack's answer. The same seed and the same commands give the
+/// the CAN gateway would, listens to DRIVE_COMMAND and AS_STATE. With a CAN port it speaks CAN in
+/// their place, and leaves these messages to a gateway. Advances by Step() only, so that simulated
+/// time can wait for the stack's answer. The same seed and the same commands give the
 /// same messages.
 class Simulator {
  public:
   static constexpr double kTick = 0.01;  // s
   static constexpr int64_t kFirstUtime = 1'700'000'000'000'000;
 
-  /// Throws std::invalid_argument for values that cannot be.
+  /// `can` must outlive the simulator. Throws std::invalid_argument for values that cannot be.
   Simulator(const SimulatorParams& params, const Car& car, const Track& track, uint64_t seed,
-            Bus& bus);
+            Bus& bus, CanPort* can = nullptr);
 
   /// One tick of 10 ms: the last commands act on the car, then the sensors publish, IMU last. The
   /// first tick publishes the car as it stands, at kFirstUtime.
@@ -50,6 +54,11 @@ class Simulator {
   /// Cones not yet knocked down, in the track's order: left, right, others.
   const std::vector<TrackCone>& standing_cones() const { return referee_.standing_cones(); }
   const Actuators& actuators() const { return actuators_; }
+
+  /// True once a gateway has answered this tick's frames by CAN, with a command and a state. To be
+  /// asked while time waits for the stack; takes what has arrived, and keeps the bus alive. Always
+  /// true without CAN.
+  bool AwaitCan();
 
   /// Names that SetSource() knows.
   static const std::vector<std::string>& Sources();
@@ -70,6 +79,9 @@ class Simulator {
   };
 
   bool IsOn(const std::string& source) const { return sources_.at(source); }
+  void ListenToCommands();
+  template <class M>
+  void PublishMeasured(const Channel<M>& channel, const M& message);
   void Advance();
   void PublishTruth();
   void PublishTruthTrack();
@@ -89,6 +101,8 @@ class Simulator {
   std::vector<PipelineRun> pipelines_;
   Referee referee_;
   RaceControl race_control_;
+  std::optional<CanCar> can_;
+  int64_t vehicle_utime_ = 0;  // of the last VEHICLE
   std::map<std::string, bool> sources_;
   std::function<void()> moved_listener_;
 };

@@ -142,7 +142,8 @@ TEST_F(LidarConeDetectorNodeTest, RefusesAScanWithAHoleAndOneWithoutVelocity) {
   Front(kStart + 1'000'000);
   EXPECT_THAT(cones_, IsEmpty());
   for (const channel_health_t& health : bus_.Health()) {
-    if (health.channel == "LIDAR_FRONT") EXPECT_EQ(health.refused, 2);
+    if (health.channel != channels::kLidarFront.name) continue;
+    EXPECT_EQ(health.refused, 2);
   }
 }
 

@@ -23,6 +23,8 @@ check "the package names a unit for every daemon" '[[ ${#units[@]} -ge 7 ]]'
 systemctl start hairpin.target
 sleep 2
 for unit in "${units[@]}"; do
+  # Skipped by its own condition: a driver without its device.
+  [[ $(systemctl show -P ConditionResult "$unit") == no ]] && continue
   check "$unit runs" '[[ $(systemctl show -P ActiveState $unit) == active ]]' "$(systemctl status --no-pager -n 20 "$unit" 2>&1)"
 done
 check "no unit has failed" '[[ -z $(systemctl --failed --quiet --plain --no-legend) ]]' "$(systemctl --failed --no-pager)"

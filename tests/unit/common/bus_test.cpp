@@ -290,5 +290,27 @@ TEST(Transport, RefusesAUrlThatItCannotOpenWithAHint) {
   }
 }
 
+TEST(Bus, ReportsAnInputThatIsNoChannelBesideTheChannels) {
+  Transport transport("memq://");
+  Bus bus(transport, "driver", 1);
+  channel_health_t& health = bus.AddInput("packets");
+  health.received = 7;
+  ASSERT_EQ(bus.Health().size(), 1u);
+  EXPECT_EQ(bus.Health().front().channel, "packets");
+  EXPECT_EQ(bus.Health().front().received, 7);
+  EXPECT_THROW(bus.AddInput("packets"), std::logic_error);
+}
+
+TEST(Bus, TakesADriversOwnMeasurementsForData) {
+  Transport transport("memq://");
+  Bus bus(transport, "driver", 1);
+  int64_t heard = 0;
+  bus.OnDataTime([&](int64_t utime) { heard = utime; });
+  bus.AdvanceDataTime(5'000'000);
+  bus.AdvanceDataTime(4'000'000);
+  EXPECT_EQ(bus.newest_utime(), 5'000'000);
+  EXPECT_EQ(heard, 5'000'000);
+}
+
 }  // namespace
 }  // namespace hairpin

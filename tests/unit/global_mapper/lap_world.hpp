@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "common/config.hpp"
@@ -68,7 +70,6 @@ class LapWorld {
     int64_t id = 0;
     double last_seen = 0.0;
     int observations = 0;
-    Eigen::Vector2d position = Eigen::Vector2d::Zero();  // local
   };
 
   /// The track's middle: a bean, driven from zero along x.
@@ -99,8 +100,7 @@ class LapWorld {
       const Eigen::Vector2d base = At(driven_).Inverse() * cones_[c];
       if (base.norm() > 14.0 || base.x() < -2.0) continue;
       Track& track = tracks_[c];
-      if (track.observations == 0 || driven_ - track.last_seen > 40.0)
-        track = {next_id_++, 0.0, 0, {}};
+      if (track.observations == 0 || driven_ - track.last_seen > 40.0) track = {next_id_++, 0.0, 0};
       track.last_seen = driven_;
       ++track.observations;
       LocalMapCone cone;
@@ -131,16 +131,30 @@ class LapWorld {
   Pose2 T_local_base_;
 };
 
-/// Distance of each map cone from the nearest true one, the worst [m], the map's frame being the
-/// world's.
+/// Distance of each map cone from the nearest true one, the worst [m], after the rigid alignment
+/// that fits best: how the whole lies in the world is not the map's to know.
 inline double WorstError(const GlobalMapEstimate& estimate, const LapWorld& world) {
-  double worst = 0.0;
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> pairs;  // mapped, true
+  Eigen::Vector2d mapped_mean = Eigen::Vector2d::Zero(), true_mean = Eigen::Vector2d::Zero();
   for (const GlobalCone& cone : estimate.cones) {
-    double nearest = 1e9;
-    for (const auto& truth : world.cones())
-      nearest = std::min(nearest, (truth - cone.position).norm());
-    worst = std::max(worst, nearest);
+    const auto distance = [&cone](const Eigen::Vector2d& p) { return (p - cone.position).norm(); };
+    const auto nearest =
+        std::min_element(world.cones().begin(), world.cones().end(),
+                         [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    pairs.emplace_back(cone.position, *nearest);
+    mapped_mean += cone.position / static_cast<double>(estimate.cones.size());
+    true_mean += *nearest / static_cast<double>(estimate.cones.size());
   }
+  double sine = 0.0, cosine = 0.0;
+  for (auto& [mapped, truth] : pairs) {
+    mapped -= mapped_mean;
+    truth -= true_mean;
+    sine += mapped.x() * truth.y() - mapped.y() * truth.x();
+    cosine += mapped.dot(truth);
+  }
+  const Pose2 turn{0.0, 0.0, std::atan2(sine, cosine)};
+  double worst = 0.0;
+  for (const auto& [mapped, truth] : pairs) worst = std::max(worst, (turn * mapped - truth).norm());
   return worst;
 }
 

@@ -1,10 +1,11 @@
 // The race line on real layouts and on random ones.
+#include "tools/line/line_study.hpp"
+
 #include <gtest/gtest.h>
 
 #include "common/config.hpp"
 #include "daemons/global_mapper/global_mapper_node.hpp"
 #include "tests/support/race_run.hpp"
-#include "tools/line/line_study.hpp"
 #include "tools/simulator/track_generator.hpp"
 
 namespace hairpin {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/geometry.hpp"
+
 namespace hairpin {
 namespace {
 

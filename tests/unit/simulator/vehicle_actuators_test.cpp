@@ -41,7 +41,7 @@ VehicleInput ActAfter(Actuators& actuators, int64_t milliseconds) {
 TEST(Actuators, ObeyAFreshCommand) {
   Actuators actuators = MakeActuators();
   const VehicleInput input = ActAfter(actuators, 49);
-  EXPECT_EQ(actuators.deadman(), Actuators::Deadman::kFresh);
+  EXPECT_EQ(actuators.deadman(), DeadmanStage::kFresh);
   EXPECT_EQ(actuators.held(), 0);
   EXPECT_EQ(input.wheel_torque[3], 50.0);
   EXPECT_EQ(input.steering_angle, 0.1);
@@ -52,7 +52,7 @@ TEST(Actuators, HoldACommandOlderThan50Milliseconds) {
   for (const int64_t age : {51, 99}) {
     Actuators actuators = MakeActuators();
     const VehicleInput input = ActAfter(actuators, age);
-    EXPECT_EQ(actuators.deadman(), Actuators::Deadman::kHeld);
+    EXPECT_EQ(actuators.deadman(), DeadmanStage::kHeld);
     EXPECT_EQ(actuators.held(), 1);
     EXPECT_EQ(input.wheel_torque[0], 50.0);
     EXPECT_EQ(input.brake, 0.0);
@@ -63,7 +63,7 @@ TEST(Actuators, BrakeWithoutTorqueAfter100Milliseconds) {
   for (const int64_t age : {101, 199}) {
     Actuators actuators = MakeActuators();
     const VehicleInput input = ActAfter(actuators, age);
-    EXPECT_EQ(actuators.deadman(), Actuators::Deadman::kBraking);
+    EXPECT_EQ(actuators.deadman(), DeadmanStage::kNeutral);
     EXPECT_EQ(input.wheel_torque[0], 0.0);
     EXPECT_EQ(input.brake, ShippedSimulatorParams().actuators.deadman_brake);
     EXPECT_EQ(input.steering_angle, 0.1);
