@@ -132,7 +132,7 @@ void BM_PclClusters(benchmark::State& state) {
 }
 BENCHMARK(BM_PclClusters)->Unit(benchmark::kMillisecond);
 
-// Colours of 30 cones of 30 returns each, in one batch.
+// Colours of 30 cones of 30 returns each.
 void BM_Colours(benchmark::State& state) {
   const ColourClassifier classifier({3, 1.0});
   std::vector<ConeReturns> cones(30);
