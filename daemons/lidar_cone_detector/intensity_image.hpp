@@ -8,7 +8,7 @@
 namespace hairpin {
 
 inline constexpr int kImageSize = 32;
-inline constexpr size_t kImagePixels = 32 * 32;
+inline constexpr size_t kImagePixels = 1024;
 /// Two planes of 32 x 32, row 0 at the ground: intensity (1: white diffuse target) where there are
 /// returns, and how well each pixel is covered by returns, 0 to 1.
 using IntensityImage = std::array<float, 2 * kImagePixels>;
