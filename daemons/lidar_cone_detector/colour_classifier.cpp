@@ -1,6 +1,5 @@
 #include "daemons/lidar_cone_detector/colour_classifier.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "daemons/lidar_cone_detector/intensity_image.hpp"
@@ -16,21 +15,11 @@ ColourClassifier::ColourClassifier(const ColourParams& params)
 std::vector<ColourDistribution> ColourClassifier::Classify(
     std::span<const ConeReturns> cones) const {
   std::vector<ColourDistribution> colours(cones.size(), kColourUnknown);
-  std::vector<size_t> chosen;
   for (size_t i = 0; i < cones.size(); ++i) {
-    if (cones[i].x.size() >= static_cast<size_t>(params_.min_returns)) chosen.push_back(i);
-  }
-  if (chosen.empty()) return colours;
-  ColourNet::Images images(chosen.size(), IntensityImage{}.size());
-  for (size_t i = 0; i < chosen.size(); ++i) {
-    const IntensityImage image =
-        RenderIntensity(cones[chosen[i]], static_cast<float>(params_.percent_per_step));
-    std::copy(image.begin(), image.end(), images.row(static_cast<Eigen::Index>(i)).data());
-  }
-  const ColourNet::Images classes = net_.Run(images);
-  for (size_t i = 0; i < chosen.size(); ++i) {
-    const auto row = classes.row(static_cast<Eigen::Index>(i)).cast<double>();
-    colours[chosen[i]] = {row[0], row[1], row[2], 0.0, 0.0};
+    if (cones[i].x.size() < static_cast<size_t>(params_.min_returns)) continue;
+    const ColourNet::Classes classes =
+        net_.Run(RenderIntensity(cones[i], static_cast<float>(params_.percent_per_step)));
+    colours[i] = {classes[0], classes[1], classes[2], 0.0, 0.0};
   }
   return colours;
 }

@@ -21,7 +21,7 @@ class ColourClassifier {
  public:
   /// Throws std::invalid_argument for values that cannot be.
   explicit ColourClassifier(const ColourParams& params);
-  /// One distribution for each cone, all in one pass of the net.
+  /// One distribution for each cone.
   std::vector<ColourDistribution> Classify(std::span<const ConeReturns> cones) const;
 
  private:

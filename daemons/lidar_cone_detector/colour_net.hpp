@@ -1,8 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
 #include <span>
 #include <vector>
+
+#include "daemons/lidar_cone_detector/intensity_image.hpp"
 
 namespace hairpin {
 
@@ -21,15 +23,17 @@ class ColourNet {
   /// The net that is shipped.
   static ColourNet Shipped();
 
-  using Images = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  /// Probabilities by class, a row for each image; an image is a row of two 32 x 32 planes.
-  Images Run(const Images& images) const;
+  using Classes = std::array<float, kClasses>;
+  /// Probabilities by class.
+  Classes Run(const IntensityImage& image) const;
+
+  /// For the implementation: weights by input, then by output.
+  struct Layer {
+    std::vector<float> weights;
+    std::vector<float> bias;
+  };
 
  private:
-  struct Layer {
-    Images weights;  // outputs x inputs
-    Eigen::RowVectorXf bias;
-  };
   std::vector<Layer> layers_;
 };
 

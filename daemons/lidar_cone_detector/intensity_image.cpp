@@ -9,7 +9,7 @@ namespace {
 constexpr float kExtent = 0.56f;       // m: a large cone, 0.505, with noise
 constexpr float kReach = 2.5f;         // pixels that a return is spread over, each way
 constexpr float kMaxIntensity = 1.5f;  // retro-reflectors say no more than "very bright"
-constexpr size_t kPlane = size_t{kImageSize} * kImageSize;
+constexpr size_t kPlane = kImagePixels;
 
 // Epanechnikov's kernel: a parabola, 0 from kReach on.
 float Kernel(float distance) {

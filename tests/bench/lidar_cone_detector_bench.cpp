@@ -132,5 +132,22 @@ void BM_PclClusters(benchmark::State& state) {
 }
 BENCHMARK(BM_PclClusters)->Unit(benchmark::kMillisecond);
 
+// Colours of 30 cones of 30 returns each.
+void BM_Colours(benchmark::State& state) {
+  const ColourClassifier classifier({3, 1.0});
+  std::vector<ConeReturns> cones(30);
+  for (size_t i = 0; i < cones.size(); ++i) {
+    cones[i].axis = {8.0f, 0.5f * static_cast<float>(i)};
+    for (int k = 0; k < 30; ++k) {
+      cones[i].x.push_back(cones[i].axis.x());
+      cones[i].y.push_back(cones[i].axis.y() + 0.03f * static_cast<float>(k % 5 - 2));
+      cones[i].z.push_back(0.05f * static_cast<float>(k / 5 + 1));
+      cones[i].intensity.push_back(static_cast<uint8_t>(10 * (k / 5)));
+    }
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(classifier.Classify(cones));
+}
+BENCHMARK(BM_Colours)->Unit(benchmark::kMillisecond);
+
 }  // namespace
 }  // namespace hairpin

@@ -189,19 +189,22 @@ nlohmann::json LidarFigures::ByReturns() const {
   return bins;
 }
 
-nlohmann::json LidarFigures::ColourAccuracy() const {
-  nlohmann::json bins = nlohmann::json::array();
+LidarFigures::ColourBins LidarFigures::Colours() const {
+  ColourBins bins;
   for (size_t i = 0; i + 1 < kColourBins.size(); ++i) {
-    double right = 0.0, all = 0.0;
+    double right = 0.0, wrong = 0.0, unknown = 0.0;
     for (const Seen& seen : seen_) {
       if (!seen.found || seen.range < kColourBins[i] || seen.range >= kColourBins[i + 1]) continue;
       if (seen.colour != ConeColour::kBlue && seen.colour != ConeColour::kYellow) continue;
       const ConeColour detected = MostProbable(seen.detected);
-      if (detected == ConeColour::kUnknown) continue;
-      all += 1.0;
-      right += detected == seen.colour;
+      if (detected == ConeColour::kUnknown) {
+        unknown += 1.0;
+      } else {
+        (detected == seen.colour ? right : wrong) += 1.0;
+      }
     }
-    bins.push_back(Share(right, all));
+    bins.accuracy.push_back(Share(right, right + wrong));
+    bins.unknown.push_back(Share(unknown, right + wrong + unknown));
   }
   return bins;
 }
@@ -236,6 +239,7 @@ nlohmann::json LidarFigures::ToJson() const {
   for (size_t i = 0; i < kNames.size(); ++i)
     stages[kNames[i]] = i < ms_.size() ? PercentilesJson(ms_[i]) : nlohmann::json();
   const auto whole = ms_.size() == kNames.size() ? Percentile(ms_.back(), 50.0) : std::nullopt;
+  const ColourBins colours = Colours();
   return {{"scans", scans_},
           {"recall_0_10m", OrNull(Recall(kNearest, 10.0))},
           {"recall_10_15m", OrNull(Recall(10.0, 15.0))},
@@ -245,7 +249,8 @@ nlohmann::json LidarFigures::ToJson() const {
           {"precision_15m_all_around", OrNull(Precision(15.0, true))},
           {"false_per_scan", Share(false_ones, scans_)},
           {"position_error_median_m", OrNull(Percentile(errors, 50.0))},
-          {"colour_accuracy", ColourAccuracy()},
+          {"colour_accuracy", colours.accuracy},
+          {"colour_unknown", colours.unknown},
           {"ms_median", OrNull(whole)},
           {"stages_ms", stages},
           {"by_range", ranges},

@@ -67,7 +67,12 @@ class LidarFigures {
   };
   nlohmann::json RangeBin(double from, double to) const;
   nlohmann::json ByReturns() const;
-  nlohmann::json ColourAccuracy() const;
+  /// Blue and yellow cones found, by the paper's bins of range.
+  struct ColourBins {
+    nlohmann::json accuracy = nlohmann::json::array();  // of those that were called a colour
+    nlohmann::json unknown = nlohmann::json::array();   // share of all that were not
+  };
+  ColourBins Colours() const;
   nlohmann::json ScansToLookAt() const;
   std::optional<double> Recall(double from, double to) const;
   std::optional<double> Precision(double to, bool everywhere) const;

@@ -1,3 +1,4 @@
+#include "daemons/lidar_cone_detector/conversion.hpp"
 #include "tools/evaluation/lidar_sources.hpp"
 #include "tools/evaluation/recorded_scans.hpp"
 #include "tools/evaluation/recorded_sensor.hpp"
@@ -26,6 +27,7 @@ void DetectInRecording(const std::string& run, const std::string& map, int rings
   const int keep_every = RecordedSensor::kRings / rings;
   const std::vector<SensorGeometry> sensors{sensor.Geometry(keep_every)};
   LidarConeDetector detector(params.detector);
+  const ColourClassifier classifier(params.colour);
   Stopwatch stopwatch;
   detector.OnStageDone([&stopwatch](DetectorStage stage) { stopwatch.Record(stage); });
   RecordedScanReader reader(run);
@@ -34,8 +36,10 @@ void DetectInRecording(const std::string& run, const std::string& map, int rings
     sensor.ToCloud(*scan, keep_every, cloud);
     const std::vector<DetectedCone>& cones = detector.Detect(cloud, sensors);
     std::vector<LidarDetection> detections;
-    for (const DetectedCone& cone : cones)
-      detections.push_back({cone.position.cast<double>(), kColourUnknown});
+    const std::vector<ColourDistribution> colours =
+        classifier.Classify(ReturnsOf(cloud, detector.heights(), cones));
+    for (size_t i = 0; i < cones.size(); ++i)
+      detections.push_back({cones[i].position.cast<double>(), colours[i]});
     std::vector<TrueCone> truth = InBase(surveyed, scan->T_map_base);
     CountReturns(cloud, truth);
     listener({number, cloud, detector, truth, detections,

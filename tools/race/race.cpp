@@ -143,11 +143,15 @@ std::unique_ptr<LidarRig> MakeLidars(const LidarRigParams& params, const Car& ca
   for (const std::string& source : Simulator::Sources()) {
     if (IsPipeline(source)) simulator.SetSource(source, false);
   }
-  return std::make_unique<LidarRig>(
+  auto lidars = std::make_unique<LidarRig>(
       params, car, options.track, options.seed, Simulator::kFirstUtime,
       [&](const std::string& sensor, LidarRig::Port port, std::span<const uint8_t> packet) {
         stack.SendPacket(sensor, port == LidarRig::Port::kPosition, packet, simulator.utime());
       });
+  simulator.OnMoved([rig = lidars.get(), &simulator] {
+    rig->Advance(simulator.utime(), simulator.vehicle(), simulator.standing_cones());
+  });
+  return lidars;
 }
 
 struct SimulatorConfig {
@@ -216,9 +220,6 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
     const int64_t before = simulator.utime();
     recorder.SetTime(before);
     simulator.Step();
-    if (lidars) {
-      lidars->Advance(simulator.utime(), simulator.vehicle(), simulator.standing_cones());
-    }
     if (lockstep) {
       lockstep->Await(before, await_can);
     } else {

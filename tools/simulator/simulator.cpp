@@ -83,6 +83,7 @@ void Simulator::Step() {
   if (can_) can_->Receive(actuators_, utime_);
   if (++tick_ > 0) Advance();
   utime_ = AddSeconds(utime_, kTick);
+  if (moved_listener_) moved_listener_();
   if (can_) can_->Begin(utime_);
   RefereeInput input;
   input.utime = utime_;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -39,6 +40,10 @@ class Simulator {
   /// One tick of 10 ms: the last commands act on the car, then the sensors publish, IMU last. The
   /// first tick publishes the car as it stands, at kFirstUtime.
   void Step();
+
+  /// Calls `listener` in each Step(), once the car has moved and before anything is published: for
+  /// sensors outside, whose data of a tick must be out before the IMU's message ends it.
+  void OnMoved(std::function<void()> listener) { moved_listener_ = std::move(listener); }
 
   /// Time of the last tick; kFirstUtime less one tick before the first.
   int64_t utime() const { return utime_; }
@@ -99,6 +104,7 @@ class Simulator {
   std::optional<CanCar> can_;
   int64_t vehicle_utime_ = 0;  // of the last VEHICLE
   std::map<std::string, bool> sources_;
+  std::function<void()> moved_listener_;
 };
 
 }  // namespace hairpin

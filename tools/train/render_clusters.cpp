@@ -44,8 +44,9 @@ LidarSensorParams VarySensor(LidarSensorParams sensor, RandomStream& random) {
     const int rings = random.Chance(0.5) ? 32 : 64;
     const double step = random.Uniform(0.3, 0.7) * kDegree;
     sensor.model = {"even", {}, 55296};
-    for (int ring = 0; ring < rings; ++ring)
-      sensor.model.lasers.push_back({(ring - 0.7 * rings) * step, 0.0, 500 * ring});
+    for (int64_t ring = 0; ring < rings; ++ring)
+      sensor.model.lasers.push_back(
+          {(static_cast<double>(ring) - 0.7 * rings) * step, 0.0, 500 * ring});
   }
   sensor.rotation_hz = random.Uniform(7.0, 15.0);
   sensor.beam.horizontal_divergence_rad *= random.Uniform(0.5, 1.3);

@@ -70,6 +70,7 @@ TEST(LidarFigures, TellRecallPrecisionAndError) {
   EXPECT_NEAR(json["position_error_median_m"].get<double>(), 0.03, 1e-9);
   EXPECT_EQ(json["colour_accuracy"][1], 1.0);
   EXPECT_EQ(json["colour_accuracy"][3], 0.0);
+  EXPECT_EQ(json["colour_unknown"][3], 0.0);
   EXPECT_TRUE(json["ms_median"].is_null());
 }
 

@@ -62,9 +62,11 @@ std::vector<double> Connect(const std::vector<double>& in, int outputs, const fl
 TEST(ColourNet, AgreesWithALayerByLayerReference) {
   const std::vector<float> weights = RandomNumbers(ColourNet::NumWeights(), 0.3f);
   const std::vector<float> pixels = RandomNumbers(3 * 2048, 1.0f);
-  const ColourNet::Images images = Eigen::Map<const ColourNet::Images>(pixels.data(), 3, 2048);
-  const ColourNet::Images classes = ColourNet(weights).Run(images);
+  const ColourNet net(weights);
   for (int image = 0; image < 3; ++image) {
+    IntensityImage input;
+    std::copy_n(pixels.begin() + image * 2048, 2048, input.begin());
+    const ColourNet::Classes classes = net.Run(input);
     const float* next = weights.data();
     std::vector<double> values(pixels.begin() + image * 2048, pixels.begin() + (image + 1) * 2048);
     values = Convolve(values, 2, 8, 32, next);
@@ -75,8 +77,7 @@ TEST(ColourNet, AgreesWithALayerByLayerReference) {
     values = Connect(values, 3, next);
     double sum = 0.0;
     for (double& value : values) sum += value = std::exp(value);
-    for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(classes(image, i), values[static_cast<size_t>(i)] / sum, 1e-4);
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(classes[i], values[i] / sum, 1e-4);
   }
 }
 

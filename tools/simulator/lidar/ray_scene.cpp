@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -42,8 +43,9 @@ uint32_t RayScene::Add(const TriangleMesh& mesh) {
                                             3 * sizeof(uint32_t), mesh.triangles.size());
   if (vertices == nullptr || triangles == nullptr)
     throw std::runtime_error("Embree takes no mesh of this size");
-  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
-  std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * vertex_bytes);
+  auto* coordinates = static_cast<float*>(vertices);
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    coordinates = std::copy_n(vertex.data(), 3, coordinates);
   std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(uint32_t));
   rtcCommitGeometry(geometry);
   const unsigned id = rtcAttachGeometry(embree_->scene, geometry);
