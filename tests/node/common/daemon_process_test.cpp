@@ -14,6 +14,7 @@
 #include "common/daemon.hpp"
 #include "tests/support/own_network.hpp"
 #include "tests/support/process.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hairpin {
 namespace {
@@ -67,11 +68,7 @@ class DaemonProcess : public testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(kDaemon)) GTEST_SKIP() << kDaemon << " is not built";
-    directory_ = testing::TempDir() + "daemon_" +
-                 testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(directory_);
   }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
 
   // Exit code and output of a run that must end by itself.
   std::pair<int, std::string> Run(const std::vector<std::string>& command) {
@@ -80,7 +77,8 @@ class DaemonProcess : public testing::Test {
     return {code.value_or(-1000), process.Output()};
   }
 
-  std::string directory_;
+  TemporaryFolder folder_;
+  std::string directory_ = folder_.path();
 };
 
 TEST_F(DaemonProcess, HelpsAndEndsWithZero) {

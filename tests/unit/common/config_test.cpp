@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "common/car.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hairpin {
 namespace {
@@ -161,17 +162,12 @@ TEST(Config, RefusesWhatIsNoYamlOrNoMapping) {
 
 class ConfigOnDisk : public testing::Test {
  protected:
-  void SetUp() override {
-    directory_ = testing::TempDir() + "config_test_" +
-                 testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(directory_);
-  }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
   void Write(const std::string& name, const std::string& text) {
     std::ofstream(directory_ + "/" + name + ".yaml") << text;
   }
 
-  std::string directory_;
+  TemporaryFolder folder_;
+  std::string directory_ = folder_.path();
 };
 
 TEST_F(ConfigOnDisk, TakesOverridesOfKeysThatTheFileHas) {

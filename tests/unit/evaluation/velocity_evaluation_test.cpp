@@ -10,6 +10,7 @@
 
 #include "common/clock.hpp"
 #include "daemons/velocity_estimator/velocity_estimator_node.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace hairpin {
 namespace {
@@ -95,17 +96,15 @@ TEST(SensorFaults, ChangeTheirSensorOnlyAndOnlyFromTheirTimeOn) {
 }
 
 TEST(SensorRecording, NamesTheLineThatCannotBeRead) {
-  const std::string folder = testing::TempDir() + "bad_recording";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder + "/imu_200hz.csv")
+  const TemporaryFolder folder;
+  std::ofstream(folder.File("imu_200hz.csv"))
       << "t_s,wx,wy,wz,ax,ay,az\n1,2,3,4,5,6,7\n2,x,3,4,5,6,7\n";
   try {
-    LoadSensorRecording(folder, {621.0, 0.231});
+    LoadSensorRecording(folder.path(), {621.0, 0.231});
     ADD_FAILURE() << "was read";
   } catch (const RecordingError& error) {
     EXPECT_NE(std::string(error.what()).find("imu_200hz.csv:3: 'x'"), std::string::npos);
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(VelocityEvaluation, BearsEveryFaultOnAMZsDriveAndKeepsThePosition) {

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "tests/support/synthetic_run.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tools/report/chart.hpp"
 #include "tools/report/run_metrics.hpp"
 
@@ -135,8 +136,8 @@ TEST(TrackPicture, MarksWhereConesWereHitAndTheCourseWasLeft) {
 }
 
 TEST(WriteReport, WritesPageFiguresAndPictures) {
-  const std::string directory = testing::TempDir() + "hairpin_report";
-  std::filesystem::create_directories(directory);
+  const TemporaryFolder folder;
+  const std::string directory = folder.path();
   const RunLog log = Lap();
   const auto report = EvaluateRun(log, Context());
   WriteReport(directory, report, log);
@@ -147,7 +148,6 @@ TEST(WriteReport, WritesPageFiguresAndPictures) {
     EXPECT_TRUE(IsWellFormed(picture)) << name;
     EXPECT_THAT(picture, HasSubstr("<style>")) << name;
   }
-  std::filesystem::remove_all(directory);
 }
 
 TEST(WriteReport, SaysThatAFolderIsNotThere) {

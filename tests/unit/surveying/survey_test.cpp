@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "daemons/gnss_driver/frame_splitter.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tools/surveying/survey_journal.hpp"
 #include "tools/surveying/survey_track.hpp"
 
@@ -115,10 +116,10 @@ std::vector<std::pair<PointKind, Eigen::Vector2d>> Circle() {
 TEST(SurveyTrack, IsALapInLocalEnuWithItsOriginAndCovariances) {
   Walker walker;
   for (const auto& [kind, place] : Circle()) walker.Mark(kind, place);
-  const std::string file = testing::TempDir() + "surveyed.yaml";
+  const TemporaryFolder folder;
+  const std::string file = folder.File("surveyed.yaml");
   SaveTrack(TrackOf(walker.survey().points(), "circle"), file);
   const Track track = LoadTrack(file);
-  std::filesystem::remove(file);
   ASSERT_TRUE(track.origin);
   EXPECT_NEAR(track.origin->latitude_deg, kHome.latitude_deg, 1e-3);
   EXPECT_EQ(track.left.size(), 24U);
@@ -141,9 +142,8 @@ TEST(SurveyTrack, SaysWhatIsMissing) {
 
 class Journal : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::remove(file_); }
-  void TearDown() override { std::filesystem::remove(file_); }
-  std::string file_ = testing::TempDir() + "survey_test.journal";
+  TemporaryFolder folder_;
+  std::string file_ = folder_.File("survey.journal");
 };
 
 TEST_F(Journal, LosesNothingButTheLineThatWasBeingWritten) {
@@ -178,7 +178,6 @@ TEST_F(Journal, RefusesAFileOfSomethingElse) {
 class SurveyTool : public Journal {
  protected:
   void SetUp() override {
-    Journal::SetUp();
     std::array<char, 128> name{};
     ASSERT_EQ(openpty(&receiver_, &slave_, name.data(), nullptr, nullptr), 0);
     ASSERT_EQ(pipe(keys_.data()), 0);
@@ -195,8 +194,6 @@ class SurveyTool : public Journal {
   void TearDown() override {
     if (tool_ > 0) kill(tool_, SIGKILL);
     for (const int descriptor : {receiver_, slave_, keys_[0], keys_[1]}) close(descriptor);
-    std::filesystem::remove(out_);
-    Journal::TearDown();
   }
 
   static std::string Angle(double degrees, int width) {
@@ -245,7 +242,7 @@ class SurveyTool : public Journal {
     return WEXITSTATUS(status);
   }
 
-  std::string out_ = testing::TempDir() + "survey_tool.yaml";
+  std::string out_ = folder_.File("track.yaml");
   int receiver_ = -1;
   int slave_ = -1;
   std::array<int, 2> keys_{-1, -1};
