@@ -28,7 +28,7 @@ vehicle_t RaceControl::Vehicle(int64_t utime, const Actuators& actuators,
   message.shutdown_circuit_closed = actuators.shutdown_circuit_closed() ? 1 : 0;
   message.brakes_engaged = state.brake >= params_.brakes_engaged_pressure ? 1 : 0;
   message.brakes_ok = 1;
-  message.ebs_activated = actuators.ebs_activated() ? 1 : 0;
+  message.ebs_state = actuators.ebs_activated() ? vehicle_t::EBS_ACTIVATED : vehicle_t::EBS_ARMED;
   message.res_go = go_ && !actuators.res_stop() ? 1 : 0;
   message.res_stop = actuators.res_stop() ? 1 : 0;
   for (const double speed : state.wheel_speed)
