@@ -26,7 +26,7 @@ struct Arguments {
   std::string map;  // file, for the trackdrive
   int laps = 0;     // 0: as many as the mission has
   bool in_process = false;
-  bool can = false;
+  std::string can;
   bool attach = false;
   std::string sensors = "cones";
   bool log_scans = false;
@@ -90,8 +90,8 @@ void Define(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember(MissionNames()))
       ->capture_default_str();
   app.add_option("--sensors", arguments.sensors,
-                 "what the simulator feeds: `cones`, as pipelines report them, or `raw`: both "
-                 "LiDARs' packets, to lidar_driver and lidar_cone_detector")
+                 "what the simulator feeds: `cones` and messages, as pipelines and drivers report "
+                 "them, or `raw`: both LiDARs' packets, CAN and the GNSS receiver's serial port")
       ->check(CLI::IsMember({"cones", "raw"}))
       ->capture_default_str();
   app.add_flag("--log-scans", arguments.log_scans,
@@ -116,8 +116,9 @@ void Define(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--in-process", arguments.in_process,
                "all daemons in one process, on memq://; repeatable to the byte");
-  app.add_flag("--can", arguments.can,
-               "the car speaks CAN, and can_gateway runs between it and the rest");
+  app.add_flag("--can{cannelloni}", arguments.can,
+               "the car speaks CAN, and can_gateway runs between it and the rest; --can=can0: over "
+               "that interface of the kernel instead of UDP");
   app.add_flag("--attach", arguments.attach,
                "drive with the daemons that run here already (systemd's) and their own configs")
       ->excludes("--in-process")
@@ -195,7 +196,7 @@ RaceOptions ToOptions(const Arguments& arguments, const Leg& leg) {
   options.log_scans = arguments.log_scans;
   const SensorLevel level = arguments.sensors == "raw" ? SensorLevel::kRaw : SensorLevel::kCones;
   const std::vector<std::string> sources =
-      arguments.attach ? Simulator::Sources() : FaultSources(level, options.can);
+      arguments.attach ? Simulator::Sources() : FaultSources(level, !options.can.empty());
   for (const std::string& text : leg.faults) options.faults.push_back(ParseFault(text, sources));
   // The map of this run belongs to this run; --set may say otherwise.
   std::vector<std::string> overrides{"global_mapper.files.directory=" + leg.out};

@@ -37,7 +37,8 @@ Simulator::Simulator(const SimulatorParams& params, const Car& car, const Track&
       actuators_(params.actuators, car),
       motion_(params.motion_sensors, car, seed),
       referee_(params.referee, car, track),
-      race_control_(params.race_control, car) {
+      race_control_(params.race_control, car),
+      gnss_receiver_(params.gnss_receiver) {
   RequireWithin("cone_delay", params.cone_delay_s, 0.0, 0.5);
   const auto add = [&](const char* source, const Channel<cones_t>& channel,
                        const ConeSensorParams& sensor) {
@@ -142,9 +143,14 @@ void Simulator::PublishMotion() {
   if (IsOn("ground_speed")) PublishMeasured(channels::kGroundSpeed, ground_speed);
   if (tick_ % Period(channels::kGnss) == 0) {
     const gnss_t gnss = motion_.Gnss(utime_, state, PeriodSeconds(channels::kGnss));
-    if (IsOn("gnss")) bus_.Publish(channels::kGnss, gnss);
+    if (IsOn("gnss")) PublishGnss(gnss);
   }
   if (IsOn("imu")) PublishMeasured(channels::kImu, imu);
+}
+
+void Simulator::PublishGnss(const gnss_t& gnss) {
+  if (gnss_port_) return gnss_port_(gnss_receiver_.Epoch(gnss));
+  bus_.Publish(channels::kGnss, gnss);
 }
 
 void Simulator::PublishVehicle() {

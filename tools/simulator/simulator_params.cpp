@@ -89,6 +89,19 @@ MotionSensorParams LoadMotionSensors(const Config& config) {
   return params;
 }
 
+GnssReceiverParams LoadGnssReceiver(const Config& config) {
+  GnssReceiverParams params;
+  const std::string protocol = config.Text("protocol");
+  if (protocol != "ubx" && protocol != "nmea")
+    throw ConfigError("simulator: gnss_receiver.protocol: `" + protocol +
+                      "` is neither ubx nor nmea");
+  params.protocol = protocol == "ubx" ? GnssProtocol::kUbx : GnssProtocol::kNmea;
+  params.origin = {config.Number("latitude_deg", {-90.0, 90.0}),
+                   config.Number("longitude_deg", {-180.0, 180.0}),
+                   config.Number("height_m", {-500.0, 9000.0})};
+  return params;
+}
+
 // Two lists of the same length: `ranges_key`, and `key` with the values there.
 PiecewiseLinear LoadTable(const Config& config, const std::string& ranges_key,
                           const std::string& key, const Range& range) {
@@ -148,6 +161,7 @@ SimulatorParams LoadSimulatorParams(const Config& config) {
   params.vehicle = LoadVehicle(config.Section("vehicle"));
   params.actuators = LoadActuators(config.Section("actuators"));
   params.motion_sensors = LoadMotionSensors(config.Section("motion_sensors"));
+  params.gnss_receiver = LoadGnssReceiver(config.Section("gnss_receiver"));
   const Config cones = config.Section("cone_sensors");
   params.cone_delay_s = cones.Number("delay_s", {0.0, 0.5});
   params.fusion = LoadConeSensor(cones.Section("fusion"));
