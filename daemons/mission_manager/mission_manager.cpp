@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "common/clock.hpp"
+#include "daemons/mission_manager/missions.hpp"
 #include "hairpin/global_map_t.hpp"
 #include "hairpin/vehicle_t.hpp"
 
@@ -23,30 +24,6 @@ void Check(const MissionManagerParams& params) {
 }
 
 }  // namespace
-
-std::string MissionProblem(int32_t mission) {
-  const char* name = nullptr;
-  switch (mission) {
-    case vehicle_t::MISSION_AUTOCROSS:
-    case vehicle_t::MISSION_TRACKDRIVE:
-    case vehicle_t::MISSION_ACCELERATION:
-      return {};
-    case vehicle_t::MISSION_SKIDPAD:
-      name = "skidpad";
-      break;
-    case vehicle_t::MISSION_BRAKE_TEST:
-      name = "brake test";
-      break;
-    case vehicle_t::MISSION_INSPECTION:
-      name = "inspection";
-      break;
-    case vehicle_t::MISSION_MANUAL:
-      return {};  // the driver drives it
-    default:
-      return "no mission is selected";
-  }
-  return std::string("mission ") + name + " cannot be driven yet";
-}
 
 MissionManager::MissionManager(const MissionManagerParams& params)
     : params_(params),
@@ -124,7 +101,7 @@ std::string MissionManager::LocalisationProblem(int64_t now) const {
   }
 }
 
-bool MissionManager::Stands(const VehicleInput& vehicle) {
+bool MissionManager::Stands(const VehicleReport& vehicle) {
   if (std::abs(vehicle.speed) >= params_.standstill_speed || moved_utime_ == 0) {
     moved_utime_ = vehicle.as.utime;
   }
@@ -138,6 +115,7 @@ int MissionManager::LapsToDrive() const {
     case vehicle_t::MISSION_TRACKDRIVE:
       return params_.trackdrive_laps;
     case vehicle_t::MISSION_ACCELERATION:
+    case vehicle_t::MISSION_BRAKE_TEST:
       return 1;
     default:
       return 0;
@@ -149,16 +127,19 @@ void MissionManager::BeginDrive() {
   std::optional<Pose2> T_map_start;
   if (mission_ == vehicle_t::MISSION_TRACKDRIVE && T_map_own_)
     T_map_start = *T_map_own_ * T_own_start;
-  const bool straight = mission_ == vehicle_t::MISSION_ACCELERATION;
+  // A brake test is driven on the same straight until the RES ends it, to the finish if it never
+  // does.
+  const bool straight =
+      mission_ == vehicle_t::MISSION_ACCELERATION || mission_ == vehicle_t::MISSION_BRAKE_TEST;
   drive_.emplace(Drive{T_own_start, T_map_start, history_.distance(),
-                       LapCounter(straight ? params_.acceleration : params_.laps)});
+                       LapCounter(straight ? params_.acceleration : params_.laps), LapsToDrive()});
 }
 
 bool MissionManager::MissionFinished() const {
-  return drive_ && drive_->laps.laps() >= LapsToDrive();
+  return drive_ && drive_->laps.laps() >= drive_->laps_to_drive;
 }
 
-std::optional<MissionReport> MissionManager::Update(const VehicleInput& vehicle, int64_t now) {
+std::optional<MissionReport> MissionManager::Update(const VehicleReport& vehicle, int64_t now) {
   if (vehicle.as.utime <= last_utime_) return std::nullopt;
   last_utime_ = vehicle.as.utime;
   const AsState before = machine_.state();

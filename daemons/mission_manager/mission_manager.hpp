@@ -27,7 +27,7 @@ struct MissionManagerParams {
 };
 
 /// Switches, brakes and RES; `as` leaves out what this class adds itself.
-struct VehicleInput {
+struct VehicleReport {
   AsInput as;
   double speed = 0.0;  // [m/s]
 };
@@ -77,7 +77,7 @@ class MissionManager {
   bool TakeLocalMap(int64_t utime, const Pose2& T_local_base, std::vector<GateCone> cones_local);
 
   /// The state when data time is `now`. Returns empty where the vehicle's time does not increase.
-  std::optional<MissionReport> Update(const VehicleInput& vehicle, int64_t now);
+  std::optional<MissionReport> Update(const VehicleReport& vehicle, int64_t now);
   /// All that keeps the car from Ready when data time is `now`, as far as it is the software.
   std::vector<std::string> SystemProblems(int64_t now) const;
 
@@ -88,11 +88,12 @@ class MissionManager {
     std::optional<Pose2> T_map_start;  // where the car is localised
     double start_distance;
     LapCounter laps;
+    int laps_to_drive;
   };
 
   Pose2 StartFromOwn() const;
   std::string LocalisationProblem(int64_t now) const;
-  bool Stands(const VehicleInput& vehicle);
+  bool Stands(const VehicleReport& vehicle);
   int LapsToDrive() const;
   void BeginDrive();
   bool MissionFinished() const;
@@ -110,8 +111,5 @@ class MissionManager {
   int64_t last_utime_ = 0;
   int64_t moved_utime_ = 0;  // when the car was last not slow
 };
-
-/// Why a mission (numbered as in vehicle_t) cannot be driven by this software; empty: it can.
-std::string MissionProblem(int32_t mission);
 
 }  // namespace hairpin

@@ -44,8 +44,8 @@ std::vector<CheckedChannel> CheckedChannels() {
   return checked;
 }
 
-VehicleInput ToInput(const vehicle_t& message) {
-  VehicleInput input;
+VehicleReport ToInput(const vehicle_t& message) {
+  VehicleReport input;
   input.as.mission = message.mission;
   input.speed = message.speed_mps;
   input.as.utime = message.utime;

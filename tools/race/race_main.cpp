@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "daemons/mission_manager/mission_manager.hpp"
+#include "daemons/mission_manager/missions.hpp"
 #include "tools/race/race.hpp"
 #include "tools/race/summary.hpp"
 #include "tools/report/report_html.hpp"
@@ -66,17 +66,22 @@ int32_t NumberOf(const std::string& mission) {
   return found->number;
 }
 
+bool IsOnAStraight(const std::string& mission) {
+  return mission == "acceleration" || mission == "brake_test";
+}
+
 /// A mission that nobody can drive here.
 class MissionError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
 
-void RequireDrivable(const std::string& mission) {
+void RequireDrivable(const std::string& mission, int laps) {
   const int32_t number = NumberOf(mission);
   if (number == vehicle_t::MISSION_MANUAL) throw MissionError("mission manual is the driver's");
   const std::string problem = MissionProblem(number);
   if (!problem.empty()) throw MissionError(problem);
+  if (IsOnAStraight(mission) && laps > 1) throw MissionError("--laps: a straight has one run");
 }
 
 void Define(CLI::App& app, Arguments& arguments) {
@@ -86,7 +91,8 @@ void Define(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", arguments.seed, "seed of all noise")->capture_default_str();
   app.add_option("--mission", arguments.mission,
                  "autocross: drive on sight, and map; trackdrive: race on a map; acceleration: a "
-                 "straight of 75 m. One that cannot be driven yet is refused by name")
+                 "straight of 75 m; brake_test: the same until RES Stop is pressed at 40 km/h. One "
+                 "that cannot be driven yet is refused by name")
       ->check(CLI::IsMember(MissionNames()))
       ->capture_default_str();
   app.add_option("--sensors", arguments.sensors,
@@ -101,7 +107,7 @@ void Define(CLI::App& app, Arguments& arguments) {
          "map of the track, from an autocross (default: a lap of autocross is driven first)")
       ->check(CLI::ExistingFile);
   app.add_option("--laps", arguments.laps,
-                 "laps to drive (default: autocross 1, trackdrive 10; acceleration has one run)")
+                 "laps to drive (default: autocross 1, trackdrive 10; a straight has one run)")
       ->check(CLI::Range(1, 50));
   app.add_option(
          "--fault", arguments.faults,
@@ -111,7 +117,7 @@ void Define(CLI::App& app, Arguments& arguments) {
   app.add_option("--speed-cap", arguments.speed_cap, "drive no faster than this [m/s]")
       ->check(CLI::Range(1.0, 40.0));
   app.add_option("--speed", arguments.speed,
-                 "at most this many times real time, 0: as fast as it goes "
+                 "at most this many times real time once the car is Ready, 0: as fast as it goes "
                  "(default 1; with --in-process 0)")
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--in-process", arguments.in_process,
@@ -175,6 +181,10 @@ std::vector<std::string> LegOverrides(const Leg& leg, double speed_cap) {
       "simulator.referee.laps=" + std::to_string(leg.laps),
       "simulator.race_control.mission=" + std::to_string(NumberOf(leg.mission)),
       "global_mapper.files.known_map=" + (leg.map.empty() ? "none" : leg.map)};
+  if (leg.mission == "brake_test") {  // by the rules: from 40 km/h, within 10 m
+    overrides.emplace_back("simulator.race_control.res_stop_speed_mps=11.2");
+    overrides.emplace_back("simulator.referee.braking_distance_m=10");
+  }
   if (leg.mission == "autocross" || leg.mission == "trackdrive")
     overrides.push_back("mission_manager." + leg.mission + "_laps=" + std::to_string(leg.laps));
   if (speed_cap > 0.0) {
@@ -271,9 +281,9 @@ int Main(int argc, char** argv) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   try {
-    RequireDrivable(arguments.mission);
+    RequireDrivable(arguments.mission, arguments.laps);
     if (arguments.track.empty())
-      arguments.track = arguments.mission == "acceleration" ? "acceleration" : "default";
+      arguments.track = IsOnAStraight(arguments.mission) ? "acceleration" : "default";
     if (arguments.out.empty())
       arguments.out = DefaultOutDir(arguments.logs_dir, arguments.track, arguments.seed);
     return Drive(arguments);
