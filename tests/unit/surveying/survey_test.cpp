@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <signal.h>
-#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -220,22 +219,19 @@ class SurveyTool : public Journal {
   /// Presses and stands still until the journal has `points` lines.
   void Mark(char key, const Eigen::Vector2d& place, int lines) {
     for (int i = 0; i < 3; ++i) Say(place);
-    WaitUntilHeard();
+    WaitUntilHeard();  // or what was said at the place before would count
     ASSERT_EQ(write(keys_[1], &key, 1), 1);
     for (int i = 0; i < 2000 && Lines() < lines; ++i) {
       Say(place);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      WaitUntilHeard();
     }
     ASSERT_EQ(Lines(), lines);
   }
-  // What was said at the place before must not count for the next key.
   void WaitUntilHeard() const {
-    int unread = 1;
-    for (int i = 0; i < 5000 && unread > 0; ++i) {
-      ASSERT_EQ(ioctl(slave_, FIONREAD, &unread), 0);
-      if (unread > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    ASSERT_EQ(unread, 0);
+    int tries = 0;
+    do {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    } while (receiver_.Unread() > 0 && ++tries < 5000);
   }
   int Lines() const {
     std::ifstream stream(file_);
