@@ -224,7 +224,8 @@ TEST(RawLap, GoesOnWhenTheFrontLidarDiesAndKeepsTheConesThatItHadSeen) {
   for (const local_cone_t& cone : before->cones) {
     const Pose2 T_local_base{before->x_m, before->y_m, before->yaw_rad};
     const Eigen::Vector2d cone_base = T_local_base.Inverse() * Eigen::Vector2d(cone.x_m, cone.y_m);
-    if (cone_base.x() < 0.0 || cone_base.norm() > 8.0) continue;  // soon behind, or not yet sure
+    // Not those that are soon far behind, nor those that are not yet sure.
+    if (cone_base.x() < 0.0 || cone_base.norm() > 12.0 || cone.num_observations < 5) continue;
     ++known;
     EXPECT_TRUE(std::any_of(after->cones.begin(), after->cones.end(),
                             [&](const local_cone_t& other) { return other.id == cone.id; }))
