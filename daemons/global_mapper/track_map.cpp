@@ -204,6 +204,8 @@ std::vector<GlobalCone> TrackMap::Cones() const {
   for (size_t i = 0; i < landmarks.size(); ++i) {
     const LandmarkInfo& info = landmarks[i];
     if (!info.alive || info.num_sightings < params_.min_sightings) continue;
+    // Where it stands is not known as long as nobody knows how the car came there.
+    if (gap_ && i >= gap_->first_landmark) continue;
     cones.push_back({static_cast<int64_t>(i), graph_.landmark(i), covariances_[i],
                      Normalised(info.colour_sum).value_or(kColourUnknown), info.num_observations});
   }

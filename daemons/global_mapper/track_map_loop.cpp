@@ -13,7 +13,6 @@ constexpr double kPairOdds = 3.0;  // logarithm of the odds that one more pair i
 // Drift is distributed as Student's t with this freedom: near its covariance as a Gaussian, but a
 // wheel that slips or a biased gyro makes more of it than any covariance told.
 constexpr double kDriftFreedom = 4.0;
-constexpr size_t kMostPoints = 40;
 constexpr Eigen::Index kPoseSize = 3;
 
 /// How improbable a drift is, in pairs: less the logarithm of its density against that of none.
@@ -92,25 +91,23 @@ std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
   return merge;
 }
 
-/// The cones seen since the gap among those seen last before it.
+/// The cones seen since the gap among those seen before it, the nearest ones of each.
 std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime) const {
   const Pose2 after = graph_.pose(gap_->pose);
   std::vector<int64_t> recent;
   std::vector<int64_t> old;
-  const auto& landmarks = table_.landmarks();
-  for (size_t l = 0; l < landmarks.size(); ++l) {
-    if (!landmarks[l].alive) continue;
-    const double distance = (graph_.landmark(l) - after.position()).norm();
-    if (l >= gap_->first_landmark)
-      recent.push_back(static_cast<int64_t>(l));
-    else if (distance <= params_.loop.search_radius)
-      old.push_back(static_cast<int64_t>(l));
+  const auto distance = [&](int64_t l) {
+    return (graph_.landmark(static_cast<size_t>(l)) - after.position()).norm();
+  };
+  for (size_t i = 0; i < table_.landmarks().size(); ++i) {
+    const auto l = static_cast<int64_t>(i);
+    if (table_.landmarks()[i].alive && distance(l) <= params_.loop.search_radius)
+      (i >= gap_->first_landmark ? recent : old).push_back(l);
   }
-  std::stable_sort(old.begin(), old.end(), [&](int64_t a, int64_t b) {
-    return landmarks[static_cast<size_t>(a)].last_seen >
-           landmarks[static_cast<size_t>(b)].last_seen;
-  });
-  old.resize(std::min(old.size(), kMostPoints));
+  for (std::vector<int64_t>* landmarks : {&recent, &old}) {
+    std::stable_sort(landmarks->begin(), landmarks->end(),
+                     [&](int64_t x, int64_t y) { return distance(x) < distance(y); });
+  }
   const auto match = MatchConstellation(
       Points(recent), Points(old), {}, params_.loop.gap,
       [&](const Pose2& T) { return DriftPenalty(CorrectionChi2(T, after, gap_->covariance)); });
