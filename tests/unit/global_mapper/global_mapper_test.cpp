@@ -43,7 +43,7 @@ TEST(GlobalMapper, ClosesTheLoopAndMapsEveryConeOnce) {
 
 // A car with poor odometry that knows it: what its covariance calls impossible is no loop.
 TEST(GlobalMapper, ClosesTheLoopWhereTheDriftExceedsTheConeSpacing) {
-  LapWorld world({0.05, 0.002});
+  LapWorld world({0.08, 0.003});
   GlobalMapperParams params = ShippedConfig().params;
   params.odometry.position_sigma = 0.04;
   params.odometry.yaw_sigma = 0.003;
