@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "common/can/can_frame.hpp"
 #include "common/can/checksum.hpp"
@@ -111,3 +112,24 @@ class Receiver {
 };
 
 }  // namespace hairpin::dbc
+
+namespace hairpin {
+
+/// Identifiers of all frames that the computer sends, and of all that the car does: what the
+/// kernel is to let through to the other.
+inline std::vector<uint32_t> IdsOfTheComputer() {
+  std::vector<uint32_t> ids;
+  dbc::ForEachMessage([&ids]<class M>(const M&) {
+    if (M::kFromComputer) ids.push_back(M::kId);
+  });
+  return ids;
+}
+inline std::vector<uint32_t> IdsOfTheCar() {
+  std::vector<uint32_t> ids;
+  dbc::ForEachMessage([&ids]<class M>(const M&) {
+    if (!M::kFromComputer) ids.push_back(M::kId);
+  });
+  return ids;
+}
+
+}  // namespace hairpin

@@ -13,14 +13,6 @@ double PeriodSeconds(int period_ms) { return 1e-3 * period_ms; }
 
 }  // namespace
 
-std::vector<uint32_t> IdsOfTheCar() {
-  std::vector<uint32_t> ids;
-  dbc::ForEachMessage([&ids]<class M>(const M&) {
-    if (!M::kFromComputer) ids.push_back(M::kId);
-  });
-  return ids;
-}
-
 std::optional<Measurement> FrameDecoder::Take(const ReceivedFrame& frame) {
   clock_.Heard(frame.arrival_micros);
   switch (frame.frame.id) {

@@ -13,9 +13,6 @@
 
 namespace hairpin {
 
-/// Identifiers of all frames that the car sends: what the kernel is to let through.
-std::vector<uint32_t> IdsOfTheCar();
-
 /// Frames of the car in, measurements out. A frame of wrong length, value out of range, wrong
 /// counter, checksum or sample time is refused, counted and named [FAULTS 30]. Frames of one
 /// measurement are put together by their sample time.

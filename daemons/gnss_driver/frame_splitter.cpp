@@ -10,6 +10,12 @@ constexpr uint8_t kSync1 = 0xb5;
 constexpr uint8_t kSync2 = 0x62;
 constexpr size_t kUbxHeader = 6;    // sync, class, id, length
 constexpr size_t kUbxOverhead = 8;  // and the checksum
+constexpr uint8_t kNovatelSync[] = {0xaa, 0x44};
+constexpr uint8_t kNovatelLong = 0x12;
+constexpr uint8_t kNovatelShort = 0x13;
+constexpr size_t kNovatelShortHeader = 12;
+constexpr size_t kNovatelLengths = 10;  // by then both kinds have said how long they are
+constexpr size_t kNovatelChecksum = 4;
 
 bool IsPrintable(uint8_t byte) { return byte >= 0x20 && byte < 0x7f; }
 
@@ -29,6 +35,15 @@ uint16_t UbxChecksum(Bytes bytes) {
     b = static_cast<uint8_t>(b + a);
   }
   return static_cast<uint16_t>(a | b << 8);
+}
+
+uint32_t NovatelChecksum(Bytes bytes) {
+  uint32_t sum = 0;
+  for (const uint8_t byte : bytes) {
+    sum ^= byte;
+    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ ((sum & 1U) != 0 ? 0xEDB88320U : 0U);
+  }
+  return sum;
 }
 
 std::string NmeaFrame(std::string_view text) {
@@ -73,6 +88,7 @@ FrameSplitter::Verdict FrameSplitter::TakeFrame() {
   const uint8_t first = rest().front();
   if (first == '$') return TakeSentence();
   if (first == kSync1) return TakeUbx();
+  if (first == kNovatelSync[0]) return RefuseNovatel();
   Drop(1);  // line ends, other protocols
   return Verdict::kTaken;
 }
@@ -120,6 +136,27 @@ FrameSplitter::Verdict FrameSplitter::TakeUbx() {
   const auto class_and_id = static_cast<uint16_t>(bytes[2] << 8 | bytes[3]);
   handlers_.on_ubx(class_and_id, bytes.subspan(kUbxHeader, length));
   Drop(length + kUbxOverhead);
+  return Verdict::kTaken;
+}
+
+FrameSplitter::Verdict FrameSplitter::RefuseNovatel() {
+  const Bytes bytes = rest();
+  const auto is = [bytes](size_t at, uint8_t value) { return bytes[at] == value; };
+  const bool is_other = (bytes.size() >= 2 && !is(1, kNovatelSync[1])) ||
+                        (bytes.size() >= 3 && !is(2, kNovatelLong) && !is(2, kNovatelShort));
+  if (is_other) {
+    Drop(1);
+    return Verdict::kTaken;
+  }
+  if (bytes.size() < kNovatelLengths) return Verdict::kNeedsMore;
+  const size_t length = is(2, kNovatelLong) ? bytes[3] + LittleEndian<uint16_t>(bytes, 8)
+                                            : kNovatelShortHeader + bytes[3];
+  if (length > kMaxPayload) return Bad("NovAtel log too long");
+  if (bytes.size() < length + kNovatelChecksum) return Verdict::kNeedsMore;
+  if (LittleEndian<uint32_t>(bytes, length) != NovatelChecksum(bytes.first(length)))
+    return Bad("NovAtel checksum wrong");
+  handlers_.on_bad("NovAtel binary log: have the receiver send NMEA");
+  Drop(length + kNovatelChecksum);
   return Verdict::kTaken;
 }
 

@@ -18,7 +18,8 @@ struct FrameHandlers {
 };
 
 /// Cuts a receiver's bytes, in pieces of any size, into NMEA 0183 sentences and UBX frames, which
-/// may alternate, with rubbish in between. Holds kMaxFrame bytes at most. A frame that turns out
+/// may alternate, with rubbish in between. NovAtel's binary logs are thrown away whole, by name:
+/// such a receiver is to send NMEA. Holds kMaxFrame bytes at most. A frame that turns out
 /// bad costs its first byte only: the next may start inside it.
 class FrameSplitter {
  public:
@@ -33,6 +34,7 @@ class FrameSplitter {
   Verdict TakeFrame();
   Verdict TakeSentence();
   Verdict TakeUbx();
+  Verdict RefuseNovatel();
   Verdict Bad(std::string_view why);
   void Drop(size_t count) { begin_ += count; }
   Bytes rest() const { return Bytes(buffer_).subspan(begin_); }
@@ -46,6 +48,9 @@ class FrameSplitter {
 uint8_t NmeaChecksum(std::string_view text);
 /// Fletcher's checksum over class, id, length and payload [u-blox interface description].
 uint16_t UbxChecksum(Bytes bytes);
+
+/// CRC-32 of NovAtel's logs, headers included [OEM7 Commands and Logs, OM-20000169].
+uint32_t NovatelChecksum(Bytes bytes);
 
 /// The wire forms, for whoever plays the receiver: "$text*hh\r\n", and a framed UBX message.
 std::string NmeaFrame(std::string_view text);

@@ -124,7 +124,7 @@ void GnssDecoder::Emit() {
   const std::optional<int64_t> utime = UtimeOf(*epoch_);
   if (!epoch_->has_position || !utime) return;
   if (last_utime_ && *utime <= *last_utime_) {
-    CountBad("time does not increase");
+    CountBad(kTimeDoesNotIncrease);
     return;
   }
   last_utime_ = utime;

@@ -21,6 +21,8 @@ namespace hairpin {
 /// message of the next epoch.
 class GnssDecoder {
  public:
+  static constexpr const char* kTimeDoesNotIncrease = "time does not increase";
+
   /// `errors`: what stands in where the receiver does not say how good it is.
   explicit GnssDecoder(const GnssErrorModel& errors);
   GnssDecoder(const GnssDecoder&) = delete;
@@ -31,7 +33,7 @@ class GnssDecoder {
   /// The epoch that waits for the rest of its messages, at the end of a recording.
   std::optional<GnssFix> Flush();
 
-  /// Frames thrown away so far, by reason.
+  /// Frames thrown away so far, by reason; fixes too whose time does not increase.
   const std::map<std::string, int64_t>& bad() const { return bad_; }
 
  private:

@@ -1,17 +1,12 @@
 #include "daemons/gnss_driver/gnss_driver_node.hpp"
 
-#include <algorithm>
-#include <array>
-#include <iostream>
-#include <stdexcept>
-
 #include "common/geometry.hpp"
+#include "daemons/gnss_driver/serial_port.hpp"
 
 namespace hairpin {
 namespace {
 
-constexpr int64_t kRetryPeriod = 1'000'000;  // us
-constexpr int kReadsPerPoll = 16;            // a receiver that floods must not hold up the rest
+constexpr const char* kInput = "serial";
 
 GnssErrorModel LoadErrors(const Config& config) {
   return {.single_m = config.Number("single_m", {0.1, 100.0}),
@@ -59,41 +54,14 @@ GnssDriverParams LoadGnssDriverParams(const Config& config) {
   return params;
 }
 
-GnssDriverNode::GnssDriverNode(const GnssDriverParams& params, Bus& bus, const Clock& clock)
-    : params_(params), bus_(bus), clock_(clock), decoder_(params.errors) {
+GnssDriverNode::GnssDriverNode(const GnssDriverParams& params, Bus& bus)
+    : params_(params), bus_(bus), health_(bus.AddInput(kInput)), decoder_(params.errors) {
   if (!params.origin_is_first_fix) plane_.emplace(params.origin);
-  TryToOpen();
 }
 
-std::vector<int> GnssDriverNode::descriptors() const {
-  return port_ ? std::vector<int>{port_->descriptor()} : std::vector<int>{};
-}
-
-void GnssDriverNode::TryToOpen() {
-  const int64_t now = clock_.NowMicros();
-  if (last_try_ && now - *last_try_ < kRetryPeriod) return;
-  last_try_ = now;
-  try {
-    port_ = std::make_unique<SerialPort>(params_.port, params_.baud_rate);
-  } catch (const std::runtime_error& error) {
-    Warn(error.what());
-  }
-}
-
-void GnssDriverNode::Poll() {
-  if (!port_) TryToOpen();
-  std::array<uint8_t, 1024> buffer;
-  for (int i = 0; port_ && i < kReadsPerPoll; ++i) {
-    try {
-      const size_t count = port_->Read(buffer);
-      if (count == 0) break;
-      for (const GnssFix& fix : decoder_.Add(Bytes(buffer).first(count))) Publish(fix);
-    } catch (const std::runtime_error& error) {
-      Warn(error.what());
-      port_.reset();
-    }
-  }
-  ReportBad();
+void GnssDriverNode::OnBytes(Bytes bytes) {
+  for (const GnssFix& fix : decoder_.Add(bytes)) Publish(fix);
+  CountBad();
 }
 
 void GnssDriverNode::Publish(const GnssFix& fix) {
@@ -104,22 +72,20 @@ void GnssDriverNode::Publish(const GnssFix& fix) {
   gnss_t message = ToMessage(fix, position, params_.antenna_baseline_yaw);
   // A receiver without a velocity has no fix as far as the estimator goes.
   if (!fix.has_velocity) message.fix = gnss_t::FIX_NONE;
+  ++health_.received;
   bus_.Publish(channels::kGnss, message);
+  bus_.AdvanceDataTime(message.utime);
 }
 
-void GnssDriverNode::ReportBad() {
+void GnssDriverNode::CountBad() {
   for (const auto& [why, count] : decoder_.bad()) {
-    if (reported_[why] != count) Warn(why + " (" + std::to_string(count) + " so far)");
-    reported_[why] = count;
+    int64_t& reported = reported_[why];
+    if (reported == count) continue;
+    const bool is_time = why == GnssDecoder::kTimeDoesNotIncrease;
+    (is_time ? health_.implausible_time : health_.undecodable) += count - reported;
+    reported = count;
+    bus_.WarnOfInput(kInput, why + " (" + std::to_string(count) + " so far)");
   }
-}
-
-// At most once a second, the first of what is wrong.
-void GnssDriverNode::Warn(const std::string& why) {
-  const int64_t now = clock_.NowMicros();
-  if (last_warning_ && now - *last_warning_ < kRetryPeriod) return;
-  last_warning_ = now;
-  std::cerr << bus_.daemon() << ": " << params_.port << ": " << why << '\n';
 }
 
 }  // namespace hairpin

@@ -1,17 +1,13 @@
 #pragma once
 
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "common/bus.hpp"
-#include "common/clock.hpp"
 #include "common/config.hpp"
 #include "common/local_enu.hpp"
 #include "daemons/gnss_driver/gnss_driver.hpp"
-#include "daemons/gnss_driver/serial_port.hpp"
 
 namespace hairpin {
 
@@ -27,35 +23,29 @@ struct GnssDriverParams {
 /// Reads `gnss_driver.yaml`. Throws ConfigError.
 GnssDriverParams LoadGnssDriverParams(const Config& config);
 
-/// Owns the serial port; publishes GNSS for each fix. A port that is absent or goes away is tried
-/// again each second.
+/// Publishes GNSS for each fix. In its heartbeats, what the receiver sent stands as the channel
+/// "serial": `received` are fixes, `undecodable` frames thrown away, `implausible_time` fixes not
+/// published since their time does not increase.
 class GnssDriverNode {
  public:
-  /// `clock`, monotonic, and `bus` must outlive the node.
-  GnssDriverNode(const GnssDriverParams& params, Bus& bus, const Clock& clock);
+  /// `bus` must outlive the node.
+  GnssDriverNode(const GnssDriverParams& params, Bus& bus);
   GnssDriverNode(const GnssDriverNode&) = delete;
   GnssDriverNode& operator=(const GnssDriverNode&) = delete;
 
-  /// The port, while it is open.
-  std::vector<int> descriptors() const;
-  /// Reads what has come.
-  void Poll();
+  /// What has come from the receiver, in pieces of any size.
+  void OnBytes(Bytes bytes);
 
  private:
-  void TryToOpen();
   void Publish(const GnssFix& fix);
-  void ReportBad();
-  void Warn(const std::string& why);
+  void CountBad();
 
   GnssDriverParams params_;
   Bus& bus_;
-  const Clock& clock_;
+  channel_health_t& health_;
   GnssDecoder decoder_;
   std::optional<LocalEnu> plane_;
-  std::unique_ptr<SerialPort> port_;
-  std::optional<int64_t> last_try_;
-  std::map<std::string, int64_t> reported_;
-  std::optional<int64_t> last_warning_;
+  std::map<std::string, int64_t> reported_;  // of what the decoder has thrown away, by reason
 };
 
 }  // namespace hairpin

@@ -73,7 +73,7 @@ UbxNavRelPosNed ParseNavRelPosNed(Bytes payload) {
   const double heading_deg = 1e-5 * LittleEndian<int32_t>(payload, 24);
   if (std::abs(heading_deg) > 360.0) throw GnssFormatError("UBX heading out of range");
   relative.heading = M_PI_2 - heading_deg * kDegree;
-  relative.heading_sigma = 1e-5 * LittleEndian<uint32_t>(payload, 36) * kDegree;
+  relative.heading_sigma = 1e-5 * LittleEndian<uint32_t>(payload, 52) * kDegree;
   return relative;
 }
 

@@ -40,7 +40,7 @@ inline RaceRun RunInProcess(const std::string& track_file, uint64_t seed,
   options.track = LoadTrack(track_file);
   options.seed = seed;
   options.in_process = true;
-  options.can = can;
+  if (can) options.can = kCannelloni;
   options.speed = 0.0;
   for (const std::string& text : faults)
     options.faults.push_back(ParseFault(text, FaultSources(level, can)));

@@ -12,6 +12,7 @@ constexpr int kShortWaitMs = 1;  // where what is waited for does not wake us
 // A scan is out when the next packet after its end has been handled, and its cones then; with a
 // LiDAR dead, the detector waits for it before it goes on with the other.
 constexpr int64_t kScanAge = 115'000;        // us: a revolution, and a tick and a packet
+constexpr int64_t kGnssAge = 100'000;        // us: an epoch is out in its own tick
 constexpr int64_t kConesAge = kScanAge;      // with both LiDARs
 constexpr int64_t kConesAgeOfOne = 180'000;  // with one
 
@@ -29,6 +30,7 @@ Lockstep::Lockstep(Transport& transport, SensorLevel level)
   if (raw) {
     Listen(channels::kLidarFront);
     Listen(channels::kLidarTop);
+    Listen(channels::kGnss);
     answers_[channels::kConesLidar.name];
   }
   answers_[channels::kPipelineStatus.name];
@@ -67,6 +69,7 @@ int64_t Lockstep::Wanted(const std::string& channel, int64_t utime) const {
   const std::string front = channels::kLidarFront.name;
   const std::string top = channels::kLidarTop.name;
   if (channel == front || channel == top) return utime - kScanAge;
+  if (channel == channels::kGnss.name) return utime - kGnssAge;
   if (channel == channels::kConesLidar.name) {
     const bool both = !answers_.at(front).silent && !answers_.at(top).silent;
     return utime - (both ? kConesAge : kConesAgeOfOne);

@@ -16,7 +16,8 @@ namespace hairpin {
 /// Makes simulated time wait for the stack's answers, so that the outcome of a lap does not depend
 /// on how fast the machine is. After each tick it waits for VELOCITY, DRIVE_COMMAND, AS_STATE and
 /// PIPELINE_STATUS of that tick, and for LOCAL_MAP, GLOBAL_MAP and TRACK of the newest observations
-/// that the map's mode uses. Where there are LiDARs, for each scan and its cones.
+/// that the map's mode uses. Where sensors are raw, for each scan and its cones, and
+/// for GNSS.
 ///
 /// A channel that has not answered within 250 ms of wall time counts as silent and is not waited
 /// for until it speaks again: a dead daemon costs one such wait, not one a tick.

@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <functional>
+#include <iomanip>
 #include <memory>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
 #include "common/can/cannelloni_port.hpp"
+#include "common/can/dbc.hpp"
+#include "common/can/socketcan_port.hpp"
 #include "tools/race/lockstep.hpp"
 #include "tools/race/overrides.hpp"
 #include "tools/race/progress.hpp"
@@ -22,6 +27,7 @@ constexpr const char* kCanGateway = "can_gateway";
 // In the race's own network namespace.
 constexpr const char* kCarAddress = "127.0.0.1:20000";
 constexpr const char* kGatewayAddress = "127.0.0.1:20001";
+constexpr int kBufferForCones = 200;     // kB: what every kernel gives
 constexpr double kStartPatience = 15.0;  // s of wall time until every daemon must have been heard
 
 /// Waits until simulated time may go on: never faster than `speed` times real time.
@@ -113,22 +119,51 @@ void AwaitDaemons(const std::vector<std::string>& daemons, Transport& transport,
 /// The car's end of the CAN bus; the gateway has the other.
 std::unique_ptr<CanPort> OpenCarPort(const RaceOptions& options, MemoryCanBus& memory,
                                      const Clock& clock) {
-  if (!options.can) return nullptr;
+  if (options.can.empty()) return nullptr;
   if (options.in_process) return memory.Attach(clock);
+  if (options.can != kCannelloni)
+    return std::make_unique<SocketCanPort>(options.can, IdsOfTheComputer(), clock);
   return std::make_unique<CannelloniPort>(ParseUdpAddress(kCarAddress),
                                           ParseUdpAddress(kGatewayAddress), clock);
 }
 
-StackOptions StackWith(const RaceOptions& options, MemoryCanBus& memory) {
+// What is to be checked of this computer before the car may be Ready: room where this run's log
+// goes, and buffers for messages as large as there are.
+std::vector<std::string> OverridesForHost(const RaceOptions& options) {
+  const std::string folder = std::filesystem::path(options.log_file).parent_path().string();
+  std::vector<std::string> overrides{"mission_manager.log_folder=" +
+                                     (folder.empty() ? "." : folder)};
+  if (options.stack.level == SensorLevel::kCones)
+    overrides.push_back("mission_manager.min_receive_buffer_kb=" + std::to_string(kBufferForCones));
+  return overrides;
+}
+
+StackOptions StackWith(const RaceOptions& options, const SimulatorParams& simulator,
+                       MemoryCanBus& memory) {
   StackOptions stack = options.stack;
-  if (!options.can) return stack;
-  stack.drivers.push_back(kCanGateway);
-  stack.can_bus = &memory;
-  const std::string prefix = std::string(kCanGateway) + ".";
-  for (const std::string& assignment :
-       {std::string("interface=cannelloni"), std::string("cannelloni_local=") + kGatewayAddress,
-        std::string("cannelloni_remote=") + kCarAddress})
-    stack.overrides.push_back(prefix + assignment);
+  // First, so that others may say otherwise.
+  const std::vector<std::string> host = OverridesForHost(options);
+  stack.overrides.insert(stack.overrides.begin(), host.begin(), host.end());
+  const auto set = [&stack](const std::string& daemon, const std::string& key, const auto& value) {
+    std::ostringstream text;
+    text << daemon << '.' << key << '=' << std::setprecision(12) << value;
+    stack.overrides.push_back(text.str());
+  };
+  if (!options.can.empty()) {
+    if (stack.level == SensorLevel::kCones) stack.drivers.push_back(kCanGateway);
+    stack.can_bus = &memory;
+    set(kCanGateway, "interface", options.can);
+    set(kCanGateway, "cannelloni_local", kGatewayAddress);
+    set(kCanGateway, "cannelloni_remote", kCarAddress);
+  }
+  if (stack.level == SensorLevel::kRaw) {
+    // The track is surveyed: what the receiver measures is told in its frame.
+    const GeodeticPoint& origin = simulator.gnss_receiver.origin;
+    set("gnss_driver", "origin.is_first_fix", "false");
+    set("gnss_driver", "origin.latitude_deg", origin.latitude_deg);
+    set("gnss_driver", "origin.longitude_deg", origin.longitude_deg);
+    set("gnss_driver", "origin.height_m", origin.height_m);
+  }
   return stack;
 }
 
@@ -136,13 +171,10 @@ bool IsPipeline(const std::string& source) {
   return source == "fusion" || source == "lidar" || source == "camera";
 }
 
-/// The LiDARs, plugged into the stack; the simulator's own pipelines say nothing then.
+/// The LiDARs, plugged into the stack.
 std::unique_ptr<LidarRig> MakeLidars(const LidarRigParams& params, const Car& car,
                                      const RaceOptions& options, Simulator& simulator,
                                      Stack& stack) {
-  for (const std::string& source : Simulator::Sources()) {
-    if (IsPipeline(source)) simulator.SetSource(source, false);
-  }
   auto lidars = std::make_unique<LidarRig>(
       params, car, options.track, options.seed, Simulator::kFirstUtime,
       [&](const std::string& sensor, LidarRig::Port port, std::span<const uint8_t> packet) {
@@ -152,6 +184,18 @@ std::unique_ptr<LidarRig> MakeLidars(const LidarRigParams& params, const Car& ca
     rig->Advance(simulator.utime(), simulator.vehicle(), simulator.standing_cones());
   });
   return lidars;
+}
+
+/// Receiver and LiDARs speak to the stack, as the CAN port does already: the simulator itself
+/// publishes nothing but the truth from then on.
+std::unique_ptr<LidarRig> PlugInRawSensors(const SimulatorParams& params, const Car& car,
+                                           const RaceOptions& options, Simulator& simulator,
+                                           Stack& stack) {
+  for (const std::string& source : Simulator::Sources()) {
+    if (IsPipeline(source)) simulator.SetSource(source, false);
+  }
+  simulator.OnGnss([&stack](std::span<const uint8_t> bytes) { stack.SendGnss(bytes); });
+  return MakeLidars(params.lidars, car, options, simulator, stack);
 }
 
 struct SimulatorConfig {
@@ -176,11 +220,13 @@ std::vector<std::string> FaultSources(SensorLevel level, bool can) {
   }
   const std::vector<std::string>& daemons = StackDaemons(level);
   sources.insert(sources.end(), daemons.begin(), daemons.end());
-  if (can) sources.push_back(kCanGateway);
+  if (can && level == SensorLevel::kCones) sources.push_back(kCanGateway);
   return sources;
 }
 
-RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
+RaceOutcome RunRace(const RaceOptions& asked, const volatile int& stop) {
+  RaceOptions options = asked;
+  if (options.stack.level == SensorLevel::kRaw && options.can.empty()) options.can = kCannelloni;
   const SimulatorConfig config = LoadSimulator(options.stack);
   Transport transport(options.in_process ? "memq://" : kDefaultLcmUrl);
   const SensorLevel level = options.stack.level;
@@ -189,7 +235,7 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
   const MonotonicClock clock;
   MemoryCanBus memory;
   const std::unique_ptr<CanPort> can = OpenCarPort(options, memory, clock);
-  const StackOptions stack_options = StackWith(options, memory);
+  const StackOptions stack_options = StackWith(options, config.params, memory);
   const std::vector<std::string> daemons = DaemonsOf(stack_options);
   FaultInjector faults(options.faults, daemons, transport);
   std::optional<Lockstep> lockstep;
@@ -205,16 +251,17 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
     AwaitDaemons(daemons, transport, *stack, stop);
     lockstep.emplace(transport, level);
   }
-  Bus bus(transport, "simulator", 1);
+  Bus bus(transport, "simulator", kSimulatorBootId);
   Simulator simulator(config.params, config.car, options.track, options.seed, bus, can.get());
   std::unique_ptr<LidarRig> lidars;
   if (level == SensorLevel::kRaw)
-    lidars = MakeLidars(config.params.lidars, config.car, options, simulator, *stack);
+    lidars = PlugInRawSensors(config.params, config.car, options, simulator, *stack);
   const auto await_can = [&simulator] { return simulator.AwaitCan(); };
 
   const int64_t start_wall = clock.NowMicros();
   const int64_t start_utime = simulator.utime();
   Pacer pacer;
+  bool was_ready = false;
   while (!simulator.done() && stop == 0) {
     faults.Apply(simulator.utime(), simulator, lidars.get(), *stack);
     const int64_t before = simulator.utime();
@@ -223,14 +270,16 @@ RaceOutcome RunRace(const RaceOptions& options, const volatile int& stop) {
     if (lockstep) {
       lockstep->Await(before, await_can);
     } else {
-      if (options.can) stack->Tend(simulator.utime());  // the gateway reads, and publishes
+      if (can) stack->Tend(simulator.utime());  // the gateway reads, and publishes
       transport.Drain();
     }
     stack->Tend(simulator.utime());
     progress.Show(simulator.utime());
+    // Nobody waits for the checks before Ready: they take as long as they take.
+    was_ready = was_ready || simulator.actuators().state() >= as_state_t::STATE_READY;
+    double speed = was_ready ? options.speed : 0.0;
     const bool waiting = lockstep && lockstep->AnyoneSilent();
-    const double speed =
-        waiting && (options.speed <= 0.0 || options.speed > 1.0) ? 1.0 : options.speed;
+    if (waiting && (speed <= 0.0 || speed > 1.0)) speed = 1.0;
     pacer.Wait(SecondsBetween(before, simulator.utime()), speed, await_can);
   }
   transport.Drain();

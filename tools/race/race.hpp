@@ -11,6 +11,8 @@
 
 namespace hairpin {
 
+inline constexpr const char* kCannelloni = "cannelloni";
+
 struct RaceOptions {
   Track track;
   uint64_t seed = 1;
@@ -19,8 +21,9 @@ struct RaceOptions {
   double speed = 1.0;   // at most this many times real time; 0: as fast as it goes
   std::vector<Fault> faults;
   StackOptions stack;
-  /// The simulated car speaks CAN, and can_gateway runs between it and the rest.
-  bool can = false;
+  /// What the simulated car speaks CAN over, to can_gateway: a CAN interface of the kernel, or
+  /// kCannelloni; empty: it does not, unless the sensors are raw. In one process it is memory.
+  std::string can;
   std::string log_file;
   bool log_scans = false;  // LIDAR_FRONT and LIDAR_TOP too: 12 MB a second
 };
@@ -33,7 +36,7 @@ struct RaceOutcome {
   bool interrupted = false;
 };
 
-/// The sources that a fault may name: the simulator's, and the daemons.
+/// The sources that a fault may name: the simulator's, and the daemons; `can`: with a gateway.
 std::vector<std::string> FaultSources(SensorLevel level = SensorLevel::kCones, bool can = false);
 
 /// Runs simulator and stack until the race is over or `stop` becomes non-zero. Throws ConfigError,

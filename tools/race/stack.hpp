@@ -13,11 +13,17 @@
 
 namespace hairpin {
 
+class GnssDriverNode;
 class LidarDriverNode;
 class PacketSender;
+class PseudoTerminal;
 
-/// Where the simulator enters the stack: cones as pipelines report them, or the LiDARs' packets.
+/// Where the simulator enters the stack: messages and cones, as drivers and pipelines report them,
+/// or the sensors' own protocols: CAN, the receiver's serial port, the LiDARs' packets.
 enum class SensorLevel { kCones, kRaw };
+
+/// What the simulator is called on its messages; daemons in its process have others.
+inline constexpr int64_t kSimulatorBootId = 1;
 
 /// The daemons that make the car drive, in the order of the data's flow, as they are called on the
 /// bus.
@@ -60,6 +66,14 @@ class Stack {
   /// data packet. Dropped where nobody listens.
   virtual void SendPacket(const std::string& sensor, bool position, std::span<const uint8_t> packet,
                           int64_t utime) = 0;
+  /// The GNSS receiver says something on its serial port. Dropped where nobody listens.
+  virtual void SendGnss(std::span<const uint8_t> bytes) = 0;
+};
+
+/// Driver nodes that run in this process without their sockets and ports.
+struct Drivers {
+  std::map<std::string, LidarDriverNode*> lidars;  // by sensor
+  GnssDriverNode* gnss = nullptr;
 };
 
 /// All nodes in this process, on one shared transport. What a node throws comes out of the
@@ -73,6 +87,7 @@ class InProcessStack final : public Stack {
   /// Hands it to the driver's node, as its socket would.
   void SendPacket(const std::string& sensor, bool position, std::span<const uint8_t> packet,
                   int64_t utime) override;
+  void SendGnss(std::span<const uint8_t> bytes) override;
 
  private:
   struct Member {
@@ -83,10 +98,10 @@ class InProcessStack final : public Stack {
   StackOptions options_;
   Transport& transport_;
   ManualClock clock_;
-  std::map<std::string, LidarDriverNode*> drivers_;  // by sensor; those that run
+  Drivers drivers_;
   std::map<std::string, NodeFactory> factories_;
   std::map<std::string, Member> members_;
-  int64_t starts_ = 0;
+  int64_t starts_ = kSimulatorBootId;
 };
 
 /// Daemons that somebody else has started and looks after: systemd on the car, or in a container.
@@ -96,6 +111,7 @@ class AttachedStack final : public Stack {
   void SetDaemon(const std::string& name, bool on) override;
   void Tend(int64_t) override {}
   void SendPacket(const std::string&, bool, std::span<const uint8_t>, int64_t) override {}
+  void SendGnss(std::span<const uint8_t>) override {}
 };
 
 /// Every daemon a process of its own, as on the car. A daemon that dies unasked is started again
@@ -112,6 +128,8 @@ class ProcessStack final : public Stack {
   /// Over UDP on loopback, to the ports of lidar_driver.yaml.
   void SendPacket(const std::string& sensor, bool position, std::span<const uint8_t> packet,
                   int64_t utime) override;
+  /// Over the pseudo terminal that is gnss_driver's port.
+  void SendGnss(std::span<const uint8_t> bytes) override;
 
  private:
   struct Process {
@@ -128,7 +146,8 @@ class ProcessStack final : public Stack {
   StackOptions options_;
   std::string lcm_url_;
   MonotonicClock clock_;
-  std::unique_ptr<PacketSender> sender_;  // none at the level of cones
+  std::unique_ptr<PacketSender> sender_;       // none at the level of cones
+  std::unique_ptr<PseudoTerminal> gnss_port_;  // the same
   std::map<std::string, Process> processes_;
 };
 

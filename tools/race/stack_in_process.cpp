@@ -1,9 +1,11 @@
 #include "daemons/boundary_estimator/boundary_estimator_node.hpp"
 #include "daemons/can_gateway/can_gateway_node.hpp"
 #include "daemons/global_mapper/global_mapper_node.hpp"
+#include "daemons/gnss_driver/gnss_driver_node.hpp"
 #include "daemons/lidar_cone_detector/lidar_cone_detector_node.hpp"
 #include "daemons/lidar_driver/lidar_driver_node.hpp"
 #include "daemons/local_mapper/local_mapper_node.hpp"
+#include "daemons/mission_manager/host.hpp"
 #include "daemons/mission_manager/mission_manager_node.hpp"
 #include "daemons/path_tracker/path_tracker_node.hpp"
 #include "daemons/velocity_estimator/velocity_estimator_node.hpp"
@@ -14,8 +16,6 @@
 namespace hairpin {
 namespace {
 
-using Drivers = std::map<std::string, LidarDriverNode*>;
-
 /// The driver without its sockets; listed in `drivers` while it lives.
 class ListedDriver {
  public:
@@ -23,9 +23,9 @@ class ListedDriver {
       : node_(LoadLidarDriverParams(config, instance), instance, bus),
         drivers_(drivers),
         sensor_("lidar_" + instance) {
-    drivers_[sensor_] = &node_;
+    drivers_.lidars[sensor_] = &node_;
   }
-  ~ListedDriver() { drivers_.erase(sensor_); }
+  ~ListedDriver() { drivers_.lidars.erase(sensor_); }
   ListedDriver(const ListedDriver&) = delete;
   ListedDriver& operator=(const ListedDriver&) = delete;
 
@@ -33,6 +33,22 @@ class ListedDriver {
   LidarDriverNode node_;
   Drivers& drivers_;
   std::string sensor_;
+};
+
+/// The same for GNSS.
+class ListedGnssDriver {
+ public:
+  ListedGnssDriver(const Config& config, Bus& bus, Drivers& drivers)
+      : node_(LoadGnssDriverParams(config), bus), drivers_(drivers) {
+    drivers_.gnss = &node_;
+  }
+  ~ListedGnssDriver() { drivers_.gnss = nullptr; }
+  ListedGnssDriver(const ListedGnssDriver&) = delete;
+  ListedGnssDriver& operator=(const ListedGnssDriver&) = delete;
+
+ private:
+  GnssDriverNode node_;
+  Drivers& drivers_;
 };
 
 NodeFactory HostDriver(const std::string& instance, Drivers& drivers) {
@@ -46,6 +62,9 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock, Drivers& driver
   return {
       {"lidar_driver_front", HostDriver("front", drivers)},
       {"lidar_driver_top", HostDriver("top", drivers)},
+      {"gnss_driver", Host([&drivers](Bus& bus, const Config& config) {
+         return ListedGnssDriver(config, bus, drivers);
+       })},
       {"lidar_cone_detector", Host([](Bus& bus, const Config& config) {
          return LidarConeDetectorNode(LoadLidarConeDetectorParams(config), bus);
        })},
@@ -65,7 +84,8 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock, Drivers& driver
          return PathTrackerNode(LoadPathTrackerParams(config), bus);
        })},
       {"mission_manager", Host([](Bus& bus, const Config& config) {
-         return MissionManagerNode(LoadMissionManagerParams(config), bus);
+         const MissionManagerParams params = LoadMissionManagerParams(config);
+         return MissionManagerNode(params, bus, ThisHost(params.startup.log_folder, bus.url()));
        })},
       {"watchdog", Host([&clock](Bus& bus, const Config& config) {
          return WatchdogNode(LoadWatchdogParams(config), bus, clock);
@@ -84,7 +104,8 @@ const std::vector<std::string>& StackDaemons(SensorLevel level) {
       "velocity_estimator", "watchdog",     "local_mapper",   "global_mapper",
       "boundary_estimator", "path_tracker", "mission_manager"};
   static const std::vector<std::string> kRaw = [] {
-    std::vector<std::string> names{"lidar_driver_front", "lidar_driver_top", "lidar_cone_detector"};
+    std::vector<std::string> names{"can_gateway", "gnss_driver", "lidar_driver_front",
+                                   "lidar_driver_top", "lidar_cone_detector"};
     names.insert(names.end(), kCones.begin(), kCones.end());
     return names;
   }();
@@ -124,7 +145,7 @@ void InProcessStack::SetDaemon(const std::string& name, bool on) {
         Config::Load(options_.config_dir, program, OverridesOf(program, options_.overrides));
     Member member;
     member.bus = std::make_unique<Bus>(transport_, name, ++starts_);
-    member.heartbeat = std::make_unique<Heartbeat>(*member.bus);
+    member.heartbeat = std::make_unique<Heartbeat>(*member.bus, config.SiblingHash("car"));
     member.node = factories_.at(name)(*member.bus, config);
     members_.emplace(name, std::move(member));
   } catch (const ConfigError& error) {
@@ -142,8 +163,12 @@ void InProcessStack::Tend(int64_t utime) {
 
 void InProcessStack::SendPacket(const std::string& sensor, bool, std::span<const uint8_t> packet,
                                 int64_t utime) {
-  const auto driver = drivers_.find(sensor);
-  if (driver != drivers_.end()) driver->second->OnPacket({packet, utime, std::nullopt});
+  const auto driver = drivers_.lidars.find(sensor);
+  if (driver != drivers_.lidars.end()) driver->second->OnPacket({packet, utime, std::nullopt});
+}
+
+void InProcessStack::SendGnss(std::span<const uint8_t> bytes) {
+  if (drivers_.gnss != nullptr) drivers_.gnss->OnBytes(bytes);
 }
 
 }  // namespace hairpin

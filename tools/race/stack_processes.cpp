@@ -13,6 +13,7 @@
 #include "tools/race/overrides.hpp"
 #include "tools/race/packet_sender.hpp"
 #include "tools/race/stack.hpp"
+#include "tools/simulator/pseudo_terminal.hpp"
 
 namespace hairpin {
 namespace {
@@ -62,6 +63,8 @@ ProcessStack::ProcessStack(const StackOptions& options, const std::string& lcm_u
     const std::string program = "lidar_driver";
     sender_ = std::make_unique<PacketSender>(
         Config::Load(options.config_dir, program, OverridesOf(program, options.overrides)));
+    gnss_port_ = std::make_unique<PseudoTerminal>();
+    options_.overrides.push_back("gnss_driver.port=" + gnss_port_->path());
   }
   for (const std::string& name : DaemonsOf(options)) Start(name, processes_[name]);
 }
@@ -118,6 +121,10 @@ void ProcessStack::Tend(int64_t) {
 void ProcessStack::SendPacket(const std::string& sensor, bool position,
                               std::span<const uint8_t> packet, int64_t) {
   if (sender_) sender_->Send(sensor, position, packet);
+}
+
+void ProcessStack::SendGnss(std::span<const uint8_t> bytes) {
+  if (gnss_port_) gnss_port_->Write(bytes);
 }
 
 void ProcessStack::Reap(const std::string& name, Process& process) {

@@ -37,7 +37,8 @@ Simulator::Simulator(const SimulatorParams& params, const Car& car, const Track&
       actuators_(params.actuators, car),
       motion_(params.motion_sensors, car, seed),
       referee_(params.referee, car, track),
-      race_control_(params.race_control, car) {
+      race_control_(params.race_control, car),
+      gnss_receiver_(params.gnss_receiver) {
   RequireWithin("cone_delay", params.cone_delay_s, 0.0, 0.5);
   const auto add = [&](const char* source, const Channel<cones_t>& channel,
                        const ConeSensorParams& sensor) {
@@ -90,6 +91,7 @@ void Simulator::Step() {
   input.driving = actuators_.state() == as_state_t::STATE_DRIVING;
   input.finished = actuators_.state() == as_state_t::STATE_FINISHED;
   input.emergency = actuators_.emergency();
+  input.res_stop = actuators_.res_stop();
   referee_.Judge(input, vehicle_.state());
   if (tick_ % Period(channels::kTruthTrack) == 0) PublishTruthTrack();
   PublishTruth();
@@ -142,12 +144,18 @@ void Simulator::PublishMotion() {
   if (IsOn("ground_speed")) PublishMeasured(channels::kGroundSpeed, ground_speed);
   if (tick_ % Period(channels::kGnss) == 0) {
     const gnss_t gnss = motion_.Gnss(utime_, state, PeriodSeconds(channels::kGnss));
-    if (IsOn("gnss")) bus_.Publish(channels::kGnss, gnss);
+    if (IsOn("gnss")) PublishGnss(gnss);
   }
   if (IsOn("imu")) PublishMeasured(channels::kImu, imu);
 }
 
+void Simulator::PublishGnss(const gnss_t& gnss) {
+  if (gnss_port_) return gnss_port_(gnss_receiver_.Epoch(gnss));
+  bus_.Publish(channels::kGnss, gnss);
+}
+
 void Simulator::PublishVehicle() {
+  if (race_control_.PressesStop(vehicle_.state())) actuators_.StopByRes();
   const vehicle_t vehicle = race_control_.Vehicle(utime_, actuators_, vehicle_.state());
   vehicle_utime_ = utime_;
   if (can_) return can_->Add(vehicle, vehicle_.state().brake);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "tools/simulator/actuators.hpp"
 #include "tools/simulator/can_car.hpp"
 #include "tools/simulator/cone_sensor.hpp"
+#include "tools/simulator/gnss_receiver.hpp"
 #include "tools/simulator/motion_sensors.hpp"
 #include "tools/simulator/race_control.hpp"
 #include "tools/simulator/referee.hpp"
@@ -25,9 +27,10 @@ namespace hairpin {
 
 /// The car, its sensors and the race around it, on a bus: publishes what drivers, perception and
 /// the CAN gateway would, listens to DRIVE_COMMAND and AS_STATE. With a CAN port it speaks CAN in
-/// their place, and leaves these messages to a gateway. Advances by Step() only, so that simulated
-/// time can wait for the stack's answer. The same seed and the same commands give the
-/// same messages.
+/// their place, and leaves these messages to a gateway; with OnGnss() a receiver's bytes in place
+/// of GNSS. With both, and its pipelines switched off, it publishes nothing but the truth. Advances
+/// by Step() only, so that simulated time can wait for the stack's answer. The same seed and the
+/// same commands give the same messages.
 class Simulator {
  public:
   static constexpr double kTick = 0.01;  // s
@@ -44,6 +47,10 @@ class Simulator {
   /// Calls `listener` in each Step(), once the car has moved and before anything is published: for
   /// sensors outside, whose data of a tick must be out before the IMU's message ends it.
   void OnMoved(std::function<void()> listener) { moved_listener_ = std::move(listener); }
+
+  /// GNSS leaves through the receiver's serial port from now on, and as no message: calls `port`
+  /// with the bytes of each epoch.
+  void OnGnss(std::function<void(std::span<const uint8_t>)> port) { gnss_port_ = std::move(port); }
 
   /// Time of the last tick; kFirstUtime less one tick before the first.
   int64_t utime() const { return utime_; }
@@ -85,6 +92,7 @@ class Simulator {
   void Advance();
   void PublishTruth();
   void PublishTruthTrack();
+  void PublishGnss(const gnss_t& gnss);
   void PublishVehicle();
   void PublishCones(PipelineRun& pipeline);
   void PublishMotion();
@@ -105,6 +113,8 @@ class Simulator {
   int64_t vehicle_utime_ = 0;  // of the last VEHICLE
   std::map<std::string, bool> sources_;
   std::function<void()> moved_listener_;
+  GnssReceiver gnss_receiver_;
+  std::function<void(std::span<const uint8_t>)> gnss_port_;
 };
 
 }  // namespace hairpin

@@ -89,6 +89,19 @@ MotionSensorParams LoadMotionSensors(const Config& config) {
   return params;
 }
 
+GnssReceiverParams LoadGnssReceiver(const Config& config) {
+  GnssReceiverParams params;
+  const std::string protocol = config.Text("protocol");
+  if (protocol != "ubx" && protocol != "nmea")
+    throw ConfigError("simulator: gnss_receiver.protocol: `" + protocol +
+                      "` is neither ubx nor nmea");
+  params.protocol = protocol == "ubx" ? GnssProtocol::kUbx : GnssProtocol::kNmea;
+  params.origin = {config.Number("latitude_deg", {-90.0, 90.0}),
+                   config.Number("longitude_deg", {-180.0, 180.0}),
+                   config.Number("height_m", {-500.0, 9000.0})};
+  return params;
+}
+
 // Two lists of the same length: `ranges_key`, and `key` with the values there.
 PiecewiseLinear LoadTable(const Config& config, const std::string& ranges_key,
                           const std::string& key, const Range& range) {
@@ -129,6 +142,7 @@ RefereeParams LoadReferee(const Config& config) {
   params.finish_limit_s = config.Number("finish_limit_s", {1.0, 600.0});
   params.no_movement_limit_s = config.Number("no_movement_limit_s", {1.0, 600.0});
   params.standstill_mps = config.Number("standstill_mps", {0.001, 1.0});
+  params.braking_distance_m = config.Number("braking_distance_m", {0.0, 100.0});
   return params;
 }
 
@@ -138,6 +152,7 @@ RaceControlParams LoadRaceControl(const Config& config) {
       config.Integer("mission", vehicle_t::MISSION_ACCELERATION, vehicle_t::MISSION_AUTOCROSS);
   params.go_after_ready_s = config.Number("go_after_ready_s", {5.0, 60.0});
   params.brakes_engaged_pressure = config.Number("brakes_engaged_pressure", kShare);
+  params.res_stop_speed_mps = config.Number("res_stop_speed_mps", {0.0, 40.0});
   return params;
 }
 
@@ -148,6 +163,7 @@ SimulatorParams LoadSimulatorParams(const Config& config) {
   params.vehicle = LoadVehicle(config.Section("vehicle"));
   params.actuators = LoadActuators(config.Section("actuators"));
   params.motion_sensors = LoadMotionSensors(config.Section("motion_sensors"));
+  params.gnss_receiver = LoadGnssReceiver(config.Section("gnss_receiver"));
   const Config cones = config.Section("cone_sensors");
   params.cone_delay_s = cones.Number("delay_s", {0.0, 0.5});
   params.fusion = LoadConeSensor(cones.Section("fusion"));

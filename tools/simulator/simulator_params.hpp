@@ -3,6 +3,7 @@
 #include "common/config.hpp"
 #include "tools/simulator/actuators.hpp"
 #include "tools/simulator/cone_sensor.hpp"
+#include "tools/simulator/gnss_receiver.hpp"
 #include "tools/simulator/lidar/lidar_rig.hpp"
 #include "tools/simulator/motion_sensors.hpp"
 #include "tools/simulator/race_control.hpp"
@@ -15,6 +16,7 @@ struct SimulatorParams {
   VehicleParams vehicle;
   ActuatorParams actuators;
   MotionSensorParams motion_sensors;
+  GnssReceiverParams gnss_receiver;
   ConeSensorParams fusion;
   ConeSensorParams lidar;
   ConeSensorParams camera;

@@ -12,6 +12,7 @@
 #include "common/clock.hpp"
 #include "common/daemon.hpp"
 #include "daemons/gnss_driver/gnss_driver_node.hpp"
+#include "daemons/gnss_driver/serial_port.hpp"
 #include "tools/surveying/survey.hpp"
 #include "tools/surveying/survey_journal.hpp"
 #include "tools/surveying/survey_track.hpp"

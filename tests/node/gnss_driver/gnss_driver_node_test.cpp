@@ -1,38 +1,28 @@
 #include "daemons/gnss_driver/gnss_driver_node.hpp"
 
 #include <gmock/gmock.h>
-#include <pty.h>
-#include <unistd.h>
 
-#include <array>
 #include <numbers>
+#include <optional>
+
+#include "common/daemon.hpp"
+#include "daemons/gnss_driver/gnss_driver_process.hpp"
+#include "tools/simulator/pseudo_terminal.hpp"
 
 namespace hairpin {
 namespace {
 
-/// The receiver's end of a pseudo terminal.
 class Receiver {
  public:
-  Receiver() {
-    std::array<char, 128> name{};
-    if (openpty(&master_, &slave_, name.data(), nullptr, nullptr) != 0) std::abort();
-    path_ = name.data();
-  }
-  ~Receiver() { Unplug(); }
   void Say(const std::string& text) {
-    ASSERT_EQ(write(master_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+    const auto* bytes = reinterpret_cast<const uint8_t*>(text.data());
+    ASSERT_EQ(terminal_->Write({bytes, text.size()}), text.size());
   }
-  void Unplug() {
-    if (master_ >= 0) close(master_);
-    if (slave_ >= 0) close(slave_);
-    master_ = slave_ = -1;
-  }
-  const std::string& path() const { return path_; }
+  void Unplug() { terminal_.reset(); }
+  std::string path() const { return terminal_->path(); }
 
  private:
-  int master_ = -1;
-  int slave_ = -1;
-  std::string path_;
+  std::optional<PseudoTerminal> terminal_{std::in_place};
 };
 
 GnssDriverParams Params(const std::string& port) {
@@ -53,9 +43,10 @@ class GnssDriverNodeTest : public testing::Test {
  protected:
   GnssDriverNodeTest() {
     listener_.Subscribe(channels::kGnss, [this](const gnss_t& fix) { fixes_.push_back(fix); });
-    listener_.Subscribe(channels::kHeartbeat, [](const heartbeat_t&) {});
+    listener_.Subscribe(channels::kHeartbeat,
+                        [this](const heartbeat_t& message) { heartbeat_ = message; });
   }
-  void Poll(GnssDriverNode& node) {
+  void Poll(GnssDriverProcess& node) {
     node.Poll();
     transport_.Drain();
   }
@@ -65,13 +56,14 @@ class GnssDriverNodeTest : public testing::Test {
   Bus listener_{transport_, "test", 2};
   ManualClock clock_;
   std::vector<gnss_t> fixes_;
+  heartbeat_t heartbeat_{};
 };
 
 TEST_F(GnssDriverNodeTest, PublishesWhatComesFromATerminal) {
   Receiver receiver;
   GnssDriverParams params = Params(receiver.path());
   params.antenna_baseline_yaw = std::numbers::pi / 2.0;
-  GnssDriverNode node(params, bus_, clock_);
+  GnssDriverProcess node(params, bus_, clock_);
   ASSERT_EQ(node.descriptors().size(), 1U);
   receiver.Say(Epoch("123519.20", 23.7664) + Epoch("123519.30", 23.7670));
   Poll(node);
@@ -85,9 +77,30 @@ TEST_F(GnssDriverNodeTest, PublishesWhatComesFromATerminal) {
   EXPECT_NEAR(fixes_[1].heading_rad, 0.0, 1e-9) << "the antennas stand across the car";
 }
 
+TEST_F(GnssDriverNodeTest, CountsBadSentencesIntoItsHeartbeat) {
+  Receiver receiver;
+  Heartbeat heartbeat(bus_, 0);
+  GnssDriverProcess node(Params(receiver.path()), bus_, clock_);
+  std::string broken = Epoch("123519.30", 23.7664);
+  broken.replace(broken.find("23.7"), 4, "99.9");  // the checksum stays
+  receiver.Say(Epoch("123519.20", 23.7664) + broken + "$GPGGA,no checksum\r\n" +
+               Epoch("123519.40", 23.7664) + Epoch("123519.10", 23.7664) +
+               Epoch("123519.50", 23.7664) + Epoch("123519.60", 23.7664));
+  Poll(node);
+  heartbeat.Send();
+  transport_.Drain();
+  EXPECT_EQ(heartbeat_.utime, fixes_.back().utime) << "a driver's measurements are the data";
+  ASSERT_EQ(heartbeat_.channels.size(), 1U);
+  const channel_health_t& serial = heartbeat_.channels[0];
+  EXPECT_EQ(serial.channel, "serial");
+  EXPECT_EQ(serial.received, static_cast<int64_t>(fixes_.size()));
+  EXPECT_EQ(serial.undecodable, 2);
+  EXPECT_EQ(serial.implausible_time, 1);
+}
+
 TEST_F(GnssDriverNodeTest, ComesBackWhenTheReceiverDoes) {
   auto receiver = std::make_unique<Receiver>();
-  GnssDriverNode node(Params(receiver->path()), bus_, clock_);
+  GnssDriverProcess node(Params(receiver->path()), bus_, clock_);
   receiver->Unplug();
   Poll(node);
   EXPECT_TRUE(node.descriptors().empty());
@@ -98,7 +111,7 @@ TEST_F(GnssDriverNodeTest, ComesBackWhenTheReceiverDoes) {
 }
 
 TEST_F(GnssDriverNodeTest, StartsWithoutItsPort) {
-  GnssDriverNode node(Params("/dev/no_such_port"), bus_, clock_);
+  GnssDriverProcess node(Params("/dev/no_such_port"), bus_, clock_);
   EXPECT_TRUE(node.descriptors().empty());
   Poll(node);
   EXPECT_TRUE(fixes_.empty());

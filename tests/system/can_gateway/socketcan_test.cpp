@@ -77,14 +77,6 @@ TEST(UserModeLinux, PassesEveryTestOfTheGatewayOnTheKernelsCan) {
   EXPECT_EQ(output.find("[  SKIPPED ]"), std::string::npos) << output;
 }
 
-std::vector<uint32_t> IdsOfTheComputer() {
-  std::vector<uint32_t> ids;
-  dbc::ForEachMessage([&ids]<class M>(const M&) {
-    if (M::kFromComputer) ids.push_back(M::kId);
-  });
-  return ids;
-}
-
 /// A bare socket, for what no port of ours would send.
 class RawSocket {
  public:

@@ -24,6 +24,7 @@ constexpr GnssErrorModel kErrors{.single_m = 2.5,
                                  .vertical_factor = 1.5,
                                  .velocity_mps = 0.05,
                                  .heading_rad = 0.005};
+constexpr const char* kNovatelLog = "NovAtel binary log: have the receiver send NMEA";
 // 2026-11-24 12:35:19.2 UTC
 constexpr int64_t kUtime = 1'795'523'719'200'000;
 
@@ -204,6 +205,39 @@ TEST_P(RealReceiver, IsUnderstoodAsGpsdUnderstandsIt) {
   RecordProperty("compared", static_cast<int>(compared));
   EXPECT_GE(compared, oracle.size() * 9 / 10) << "of " << oracle.size();
   EXPECT_GT(compared, 0U);
+}
+
+class NovatelReceiver : public testing::TestWithParam<std::pair<const char*, int>> {};
+
+TEST_P(NovatelReceiver, IsRefusedByNameAndItsLogsAreCounted) {
+  const std::string file = Recording(std::string("novatel_oem7/") + GetParam().first);
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is absent";
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  GnssDecoder decoder(kErrors);
+  EXPECT_TRUE(Decode(decoder, bytes).empty());
+  EXPECT_FALSE(decoder.Flush());
+  ASSERT_EQ(decoder.bad().count(kNovatelLog), 1U);
+  EXPECT_EQ(decoder.bad().at(kNovatelLog), GetParam().second);
+  EXPECT_EQ(decoder.bad().size(), 1U) << "nothing in a log is taken for another protocol";
+}
+
+INSTANTIATE_TEST_SUITE_P(Gnss, NovatelReceiver,
+                         testing::Values(std::pair("align.gps", 12), std::pair("bestpos.gps", 26),
+                                         std::pair("ins1.gps", 284), std::pair("ins2.gps", 835)));
+
+TEST(GnssDecoder, UnderstandsNmeaBetweenNovatelLogs) {
+  std::string log("\xaa\x44\x13\x02\xfc\x01\x56\x08\xf0\xc7\x33\x1e$G", 14);
+  const uint32_t sum =
+      NovatelChecksum(Bytes(reinterpret_cast<const uint8_t*>(log.data()), log.size()));
+  for (int i = 0; i < 4; ++i) log += static_cast<char>(sum >> (8 * i) & 0xffU);
+  GnssDecoder decoder(kErrors);
+  const std::string bytes = log + Epoch("123519.20") + log + Epoch("123519.30") + "\xaa\x44" + log;
+  EXPECT_EQ(Decode(decoder, bytes).size(), 2U);
+  EXPECT_EQ(decoder.bad().at(kNovatelLog), 3);
+  log.back() = static_cast<char>(log.back() ^ 1);
+  Decode(decoder, log);
+  EXPECT_EQ(decoder.bad().count("NovAtel checksum wrong"), 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Gnss, RealReceiver,

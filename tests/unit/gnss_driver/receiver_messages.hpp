@@ -53,7 +53,8 @@ inline std::vector<uint8_t> RelPosNedPayload(uint32_t time_of_week_ms, double he
   bytes[0] = 1;
   Put(bytes, 4, time_of_week_ms);
   Put(bytes, 24, static_cast<int32_t>(std::lround(heading_deg * 1e5)));
-  Put(bytes, 36, static_cast<uint32_t>(std::lround(accuracy_deg * 1e5)));
+  Put(bytes, 36, uint32_t{77});  // accuracy to the north, 0.1 mm
+  Put(bytes, 52, static_cast<uint32_t>(std::lround(accuracy_deg * 1e5)));
   Put(bytes, 60, uint32_t{0x105});
   return bytes;
 }

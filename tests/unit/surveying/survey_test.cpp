@@ -1,7 +1,6 @@
 #include "tools/surveying/survey.hpp"
 
 #include <gmock/gmock.h>
-#include <pty.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,6 +14,7 @@
 
 #include "daemons/gnss_driver/frame_splitter.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tools/simulator/pseudo_terminal.hpp"
 #include "tools/surveying/survey_journal.hpp"
 #include "tools/surveying/survey_track.hpp"
 
@@ -178,22 +178,20 @@ TEST_F(Journal, RefusesAFileOfSomethingElse) {
 class SurveyTool : public Journal {
  protected:
   void SetUp() override {
-    std::array<char, 128> name{};
-    ASSERT_EQ(openpty(&receiver_, &slave_, name.data(), nullptr, nullptr), 0);
     ASSERT_EQ(pipe(keys_.data()), 0);
     tool_ = fork();
     if (tool_ == 0) {
       dup2(keys_[0], STDIN_FILENO);
       close(keys_[1]);
-      execl(HAIRPIN_BINARY_DIR "/bin/hairpin-survey", "hairpin-survey", "--port", name.data(),
-            "--out", out_.c_str(), "--journal", file_.c_str(), "--config-dir",
-            HAIRPIN_SOURCE_DIR "/config", nullptr);
+      execl(HAIRPIN_BINARY_DIR "/bin/hairpin-survey", "hairpin-survey", "--port",
+            receiver_.path().c_str(), "--out", out_.c_str(), "--journal", file_.c_str(),
+            "--config-dir", HAIRPIN_SOURCE_DIR "/config", nullptr);
       _exit(127);
     }
   }
   void TearDown() override {
     if (tool_ > 0) kill(tool_, SIGKILL);
-    for (const int descriptor : {receiver_, slave_, keys_[0], keys_[1]}) close(descriptor);
+    for (const int descriptor : keys_) close(descriptor);
   }
 
   static std::string Angle(double degrees, int width) {
@@ -215,7 +213,8 @@ class SurveyTool : public Journal {
                   Angle(point.longitude_deg, 3) + ",E,4,20,0.6,440.0,M,48.0,M,,") +
         NmeaFrame("GNGST," + at + ",0.01,0.01,0.01,0.0,0.010,0.012,0.020") +
         NmeaFrame("GNRMC," + at + ",A,,,,,0.0,,241126,,,R");
-    ASSERT_GT(write(receiver_, text.data(), text.size()), 0);
+    const auto* bytes = reinterpret_cast<const uint8_t*>(text.data());
+    ASSERT_GT(receiver_.Write({bytes, text.size()}), 0U);
   }
   /// Presses and stands still until the journal has `points` lines.
   void Mark(char key, const Eigen::Vector2d& place, int lines) {
@@ -243,8 +242,7 @@ class SurveyTool : public Journal {
   }
 
   std::string out_ = folder_.File("track.yaml");
-  int receiver_ = -1;
-  int slave_ = -1;
+  PseudoTerminal receiver_;
   std::array<int, 2> keys_{-1, -1};
   pid_t tool_ = -1;
   int tick_ = 0;
