@@ -16,6 +16,7 @@ constexpr size_t kMaxPoints = 40;     // bounds the work; the first ones count
 constexpr int kRefinements = 3;
 
 using Points = std::vector<ConstellationPoint>;
+using Points2d = std::vector<Eigen::Vector2d>;
 using Pairs = std::vector<std::pair<size_t, size_t>>;
 
 bool IsOrange(ConeColour colour) {
@@ -109,7 +110,11 @@ class Search {
         guess_(guess),
         params_(params),
         penalty_(penalty),
-        centre_(Centre(from)) {}
+        centre_(Centre(from)) {
+    for (const ConstellationPoint& point : to) by_x_.push_back(point.position);
+    std::sort(by_x_.begin(), by_x_.end(),
+              [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  }
 
   std::optional<ConstellationMatch> Run() {
     for (size_t i = 0; i < from_.size(); ++i) {
@@ -134,7 +139,7 @@ class Search {
         if (&p == &q || !AreCompatible(b.colour, q.colour)) continue;
         if (std::abs((q.position - p.position).norm() - baseline) > params_.tolerance) continue;
         const Pose2 motion = MotionOfPair(a.position, b.position, p.position, q.position);
-        if (IsWithinBounds(motion)) Consider(motion);
+        if (IsWithinBounds(motion) && IsPromising(motion)) Consider(motion);
       }
     }
   }
@@ -142,6 +147,23 @@ class Search {
   bool IsWithinBounds(const Pose2& motion) const {
     return std::abs(WrapAngle(motion.yaw - guess_.yaw)) <= params_.max_rotation &&
            (motion * centre_ - guess_ * centre_).norm() <= params_.max_translation;
+  }
+
+  /// True if half the points wanted come near any: most motions can be passed over for little.
+  bool IsPromising(const Pose2& motion) const {
+    const double tolerance = params_.tolerance;
+    size_t near = 0;
+    for (const ConstellationPoint& point : from_) {
+      const Eigen::Vector2d position = motion * point.position;
+      auto other = std::lower_bound(by_x_.begin(), by_x_.end(), position.x() - tolerance,
+                                    [](const auto& a, double x) { return a.x() < x; });
+      for (; other != by_x_.end() && other->x() < position.x() + tolerance; ++other) {
+        if (std::abs(other->y() - position.y()) >= tolerance) continue;
+        if (2 * ++near >= params_.min_pairs) return true;
+        break;
+      }
+    }
+    return false;
   }
 
   void Consider(const Pose2& motion) {
@@ -178,6 +200,7 @@ class Search {
   ConstellationParams params_;
   const PlacePenalty& penalty_;
   Eigen::Vector2d centre_;
+  Points2d by_x_;  // positions of `to`, by rising x
   ConstellationMatch best_;
   std::map<Pairs, double> places_;  // score by sorted pairs
 };

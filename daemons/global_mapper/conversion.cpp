@@ -12,6 +12,7 @@ std::optional<LocalMapCone> ToCone(const local_cone_t& message, int64_t utime) {
   LocalMapCone cone;
   cone.id = message.id;
   cone.seen_now = message.last_seen_utime == utime;
+  cone.last_seen_utime = message.last_seen_utime;
   cone.position = {message.x_m, message.y_m};
   cone.covariance << message.covariance_xx_m2, message.covariance_xy_m2, message.covariance_xy_m2,
       message.covariance_yy_m2;

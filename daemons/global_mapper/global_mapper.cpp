@@ -63,17 +63,21 @@ GlobalMapper::Outcome GlobalMapper::AddLocalMap(const LocalMapInput& map) {
   if (last_ && map.utime <= last_->utime) return {std::nullopt, {}, "time does not increase"};
   Outcome outcome;
   if (localiser_) {
-    outcome.estimate = Localise(map);
+    outcome = Localise(map);
   } else {
     outcome = Map(map);
+    last_map_ = map;
   }
   last_ = Seen{map.utime, map.epoch, map.T_local_base};
   return outcome;
 }
 
-GlobalMapEstimate GlobalMapper::Localise(const LocalMapInput& map) {
+GlobalMapper::Outcome GlobalMapper::Localise(const LocalMapInput& map) {
   std::optional<Motion> motion;
   if (last_) motion = MotionSince(*last_, map);
+  // After a restart nobody knows how the car moved between two epochs; about where it is, yes.
+  if (last_ && last_->epoch != map.epoch && !odometry_.Between(last_->utime, map.utime))
+    localiser_->Lose();
   if (motion) odometer_ += motion->T_from_to.position().norm();
   localiser_->Observe(map, motion);
   GlobalMapEstimate estimate = Estimate(map, localiser_->T_map_base());
@@ -82,18 +86,46 @@ GlobalMapEstimate GlobalMapper::Localise(const LocalMapInput& map) {
   estimate.cones = localiser_->cones();
   if (localiser_->localised()) CountLaps(estimate.T_map_base, odometer_, estimate.cones);
   estimate.laps = laps_;
-  return estimate;
+  Outcome outcome;
+  if (localiser_->localised()) {
+    outcome.records.emplace_back(PlaceRecord{map.utime, map.epoch, map.T_local_base,
+                                             estimate.T_map_base, estimate.pose_covariance, laps_,
+                                             odometer_, lap_odometer_});
+  }
+  outcome.estimate = std::move(estimate);
+  return outcome;
+}
+
+/// Where the local map begins anew and nobody knows well how the car moved meanwhile, the last map
+/// of the old epoch is taken as a whole, so that its far cones can be known again.
+void GlobalMapper::EndEpoch(const LocalMapInput& next, Outcome& outcome) {
+  if (!keyframe_ || !last_map_ || last_map_->epoch == next.epoch) return;
+  if (!map_.IsGap(MotionSince(*last_, next).covariance)) return;
+  TrackMap::Step step = map_.Observe(*last_map_, MotionSince(*keyframe_, *last_map_), true);
+  outcome.records = std::move(step.records);
+  keyframe_ = Seen{last_map_->utime, last_map_->epoch, last_map_->T_local_base};
+}
+
+/// The map, with the cones marked that were seen since the last one that came: some were lost, or
+/// this daemon was away.
+LocalMapInput GlobalMapper::Caught(const LocalMapInput& map) const {
+  LocalMapInput caught = map;
+  if (!last_ || last_->epoch != map.epoch) return caught;
+  for (LocalMapCone& cone : caught.cones)
+    cone.seen_meanwhile = !cone.seen_now && cone.last_seen_utime > last_->utime;
+  return caught;
 }
 
 GlobalMapper::Outcome GlobalMapper::Map(const LocalMapInput& map) {
   Outcome outcome;
+  EndEpoch(map, outcome);
   Motion motion;
   if (keyframe_) motion = MotionSince(*keyframe_, map);
   const bool was_closed = map_.loop_closed();
   bool valid = true;
   if (!keyframe_ || map_.IsKeyframe(motion.T_from_to)) {
-    TrackMap::Step step = map_.Observe(map, motion);
-    outcome.records = std::move(step.records);
+    TrackMap::Step step = map_.Observe(Caught(map), motion);
+    outcome.records.insert(outcome.records.end(), step.records.begin(), step.records.end());
     valid = step.solved;
     keyframe_ = Seen{map.utime, map.epoch, map.T_local_base};
     motion = {};
@@ -151,8 +183,21 @@ void GlobalMapper::CountLaps(const Pose2& T_map_base, double odometer,
   lap_odometer_ = odometer;
 }
 
+void GlobalMapper::Resume(const PlaceRecord& place) {
+  if (!localiser_) return;
+  localiser_->Resume(place.T_map_base, place.covariance);
+  last_ = Seen{place.utime, place.epoch, place.T_local_base};
+  laps_ = static_cast<int>(place.laps);
+  odometer_ = place.odometer;
+  lap_odometer_ = place.lap_odometer;
+}
+
 void GlobalMapper::Replay(const std::vector<MapRecord>& records) {
   for (const MapRecord& record : records) {
+    if (const auto* place = std::get_if<PlaceRecord>(&record)) {
+      Resume(*place);
+      continue;
+    }
     const bool was_closed = map_.loop_closed();
     map_.Replay(record);
     CountLapsOfMap(was_closed, map_.last_pose(), map_.odometer());

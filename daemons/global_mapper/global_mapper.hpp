@@ -54,10 +54,12 @@ class GlobalMapper {
   /// one.
   Outcome AddLocalMap(const LocalMapInput& map);
 
-  /// Rebuilds the map from what was recorded of it, before anything else comes in.
+  /// Rebuilds the map from what was recorded of it, or the place in the known one, before anything
+  /// else comes in.
   void Replay(const std::vector<MapRecord>& records);
 
   bool loop_closed() const { return map_.loop_closed(); }
+  bool localising() const { return localiser_.has_value(); }
   /// Times that the loop was closed or, later, the start line crossed.
   int laps() const { return laps_; }
 
@@ -69,7 +71,10 @@ class GlobalMapper {
   };
   std::vector<Eigen::Vector2d> Driven() const;
   Motion MotionSince(const Seen& before, const LocalMapInput& map) const;
-  GlobalMapEstimate Localise(const LocalMapInput& map);
+  Outcome Localise(const LocalMapInput& map);
+  void EndEpoch(const LocalMapInput& next, Outcome& outcome);
+  LocalMapInput Caught(const LocalMapInput& map) const;
+  void Resume(const PlaceRecord& place);
   Outcome Map(const LocalMapInput& map);
   GlobalMapEstimate Estimate(const LocalMapInput& map, const Pose2& T_map_base) const;
   void CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer);
@@ -79,8 +84,9 @@ class GlobalMapper {
   VelocityOdometry odometry_;
   TrackMap map_;
   std::optional<Localiser> localiser_;
-  std::optional<Seen> last_;      // local map
-  std::optional<Seen> keyframe_;  // local map of the last keyframe
+  std::optional<Seen> last_;               // local map
+  std::optional<Seen> keyframe_;           // local map of the last keyframe
+  std::optional<LocalMapInput> last_map_;  // the whole of it, while mapping
   std::optional<double> past_gate_;
   double odometer_ = 0.0;
   double lap_odometer_ = 0.0;

@@ -1,3 +1,7 @@
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+
 #include "daemons/global_mapper/conversion.hpp"
 #include "daemons/global_mapper/global_mapper_node.hpp"
 #include "daemons/global_mapper/race_line_sender.hpp"
@@ -50,6 +54,8 @@ GraphParams LoadGraph(const Config& config) {
 LoopParams LoadLoop(const Config& config) {
   LoopParams params;
   params.constellation = LoadConstellation(config.Section("constellation"));
+  params.gap = LoadConstellation(config.Section("gap_constellation"));
+  params.min_pairs_by_shape = static_cast<size_t>(config.Integer("min_pairs_by_shape", 3, 40));
   params.min_distance = config.Number("min_distance_m", kPositive);
   params.recent_distance = config.Number("recent_distance_m", kPositive);
   params.search_radius = config.Number("search_radius_m", kPositive);
@@ -93,13 +99,33 @@ LocaliserParams LoadLocaliser(const Config& config) {
   return params;
 }
 
+/// Where systemd lets a service keep its state; empty where it was not started by systemd.
+std::string StateDirectory() {
+  const char* directories = std::getenv("STATE_DIRECTORY");
+  const std::string all = directories == nullptr ? "" : directories;
+  return all.substr(0, all.find(':'));
+}
+
 MapStoreParams LoadStore(const Config& config) {
   MapStoreParams params;
   params.directory = config.Text("directory");
+  if (params.directory == "state") params.directory = StateDirectory();
   if (params.directory == "none") params.directory.clear();
   params.resume_within = config.Number("resume_within_s", kPositive);
   params.max_journal_bytes = int64_t{1024} * 1024 * config.Integer("max_journal_mib", 1, 4096);
   return params;
+}
+
+/// None where there is none yet. One that cannot be read must not keep the car from making another.
+std::optional<MapFile> MapOfLastDrive(const std::string& directory) {
+  const std::string file = directory + "/map.yaml";
+  if (directory.empty() || !std::filesystem::exists(file)) return std::nullopt;
+  try {
+    return LoadMapFile(file);
+  } catch (const MapFileError& error) {
+    std::cerr << "global_mapper: " << error.what() << ": not raced on\n";
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -118,6 +144,10 @@ GlobalMapperConfig LoadGlobalMapperConfig(const Config& config) {
   result.race_line_ahead = race_line.Number("ahead_m", {20.0, 200.0});
   config.Finish();
   if (known_map == "none") return result;
+  if (known_map == "state") {
+    result.known_map = MapOfLastDrive(result.store.directory);
+    return result;
+  }
   try {
     result.known_map = LoadMapFile(known_map);
   } catch (const MapFileError& error) {

@@ -65,7 +65,7 @@ void GlobalMapperNode::OnVelocity(const velocity_t& velocity) {
 void GlobalMapperNode::OnLocalMap(const local_map_t& message) {
   const ConvertedMap converted = ToLocalMapInput(message, kMaxLocalCones);
   if (!converted.map) return bus_.Refuse(channels::kLocalMap, std::string(converted.problem));
-  if (!resumed_ && !localising_) Resume(message.utime);
+  if (!resumed_) Resume(message.utime);
   const GlobalMapper::Outcome outcome = mapper_->AddLocalMap(*converted.map);
   if (!outcome.refused.empty())
     return bus_.Refuse(channels::kLocalMap, std::string(outcome.refused));

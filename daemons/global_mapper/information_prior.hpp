@@ -57,7 +57,8 @@ class InformationPrior {
                                        const Eigen::VectorXd& difference) const;
   Eigen::Index size() const { return b_.size(); }
 
-  Eigen::MatrixXd H_;  // the first size() rows and columns; the rest is zero, kept for landmarks to come
+  Eigen::MatrixXd
+      H_;  // the first size() rows and columns; the rest is zero, kept for landmarks to come
   Eigen::VectorXd b_;
   Eigen::VectorXd reference_;
   std::vector<size_t> landmarks_;       // by slot

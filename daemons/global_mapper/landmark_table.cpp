@@ -34,7 +34,7 @@ int LandmarkTable::Counted(int64_t local_id) const {
   return found == of_local_.end() ? 0 : found->second.num_observations;
 }
 
-void LandmarkTable::Add(const KeyframeRecord& keyframe, double odometer) {
+void LandmarkTable::Add(const KeyframeRecord& keyframe, double odometer, int bridged) {
   if (keyframe.epoch != epoch_) of_local_.clear();
   epoch_ = keyframe.epoch;
   for (const SightingRecord& sighting : keyframe.sightings) {
@@ -47,7 +47,7 @@ void LandmarkTable::Add(const KeyframeRecord& keyframe, double odometer) {
     for (size_t i = 0; i < sighting.colour.size(); ++i)
       landmark.colour_sum[i] += sighting.colour[i];
     landmark.num_observations += sighting.num_observations;
-    ++landmark.num_sightings;
+    landmark.num_sightings += std::clamp(sighting.num_observations, 1, bridged);
     landmark.last_seen = odometer;
     of_local_[sighting.local_id] = {sighting.landmark, sighting.local_observations};
   }

@@ -40,7 +40,9 @@ class LandmarkTable {
   /// Observations of a local cone that are counted already.
   int Counted(int64_t local_id) const;
 
-  void Add(const KeyframeRecord& keyframe, double odometer);
+  /// `bridged`: keyframes that would have fitted in since the one before, at least 1. A cone counts
+  /// as seen by as many of them as it has new observations.
+  void Add(const KeyframeRecord& keyframe, double odometer, int bridged);
   void Merge(int64_t landmark, int64_t into);
   void Remove(int64_t landmark);
 

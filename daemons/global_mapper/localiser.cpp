@@ -59,6 +59,13 @@ void Localiser::Predict(const Motion& motion) {
   pose_ = pose_ * motion.T_from_to;
 }
 
+void Localiser::Resume(const Pose2& T_map_base, const Eigen::Matrix3d& covariance) {
+  pose_ = T_map_base;
+  covariance_ = covariance;
+  localised_ = true;
+  unmatched_ = 0;
+}
+
 void Localiser::Observe(const LocalMapInput& map, const std::optional<Motion>& motion) {
   if (motion) Predict(*motion);
   if (!localised_) {

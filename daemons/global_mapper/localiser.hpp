@@ -35,6 +35,11 @@ class Localiser {
   /// `motion`: since the map before; none before the first one or where it is not known.
   void Observe(const LocalMapInput& map, const std::optional<Motion>& motion);
 
+  /// Goes on from a place that an earlier life knew.
+  void Resume(const Pose2& T_map_base, const Eigen::Matrix3d& covariance);
+  /// The place is to be found again by the shape of the cones, about where it is.
+  void Lose() { localised_ = false; }
+
   bool localised() const { return localised_; }
   const Pose2& T_map_base() const { return pose_; }
   const Eigen::Matrix3d& covariance() const { return covariance_; }

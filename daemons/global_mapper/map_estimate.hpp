@@ -44,6 +44,8 @@ struct LocalMapCone {
   ColourDistribution colour = kColourUnknown;
   double existence = 0.0;
   int num_observations = 0;
+  int64_t last_seen_utime = 0;
+  bool seen_meanwhile = false;  // since the last local map that was taken, but not in this one
 };
 
 struct LocalMapInput {
@@ -59,9 +61,11 @@ struct ConeFilter {
   double min_existence = 0.0;  // 0 to 1
   int min_observations = 0;    // >= 1
 
+  bool IsCertain(const LocalMapCone& cone) const {
+    return cone.existence >= min_existence && cone.num_observations >= min_observations;
+  }
   bool Accepts(const LocalMapCone& cone, const Pose2& T_local_base) const {
-    return cone.seen_now && cone.existence >= min_existence &&
-           cone.num_observations >= min_observations &&
+    return cone.seen_now && IsCertain(cone) &&
            (cone.position - T_local_base.position()).norm() <= max_range;
   }
 };

@@ -33,10 +33,12 @@ struct KeyframeRecord {
   std::vector<SightingRecord> sightings;
 };
 
-/// Pairs (landmark, into) that were found to be one cone. `loop`: they close the lap.
+/// Pairs (landmark, into) that were found to be one cone. `loop`: they close the lap. `by_shape`:
+/// odometry alone would not have believed it.
 struct MergeRecord {
   int64_t utime = 0;
   bool loop = false;
+  bool by_shape = false;
   std::vector<std::pair<int64_t, int64_t>> pairs;
 };
 
@@ -46,7 +48,19 @@ struct RemovalRecord {
   std::vector<int64_t> landmarks;
 };
 
-/// What happened to the map: replayed in order it is the map again.
-using MapRecord = std::variant<KeyframeRecord, MergeRecord, RemovalRecord>;
+/// The car's place in a known map, and its laps.
+struct PlaceRecord {
+  int64_t utime = 0;
+  int64_t epoch = 0;
+  Pose2 T_local_base;
+  Pose2 T_map_base;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // of T_map_base
+  int64_t laps = 0;
+  double odometer = 0.0;      // m
+  double lap_odometer = 0.0;  // where the last lap ended
+};
+
+/// What happened to the map: replayed in order it is the map again. Of places the last one counts.
+using MapRecord = std::variant<KeyframeRecord, MergeRecord, RemovalRecord, PlaceRecord>;
 
 }  // namespace hairpin

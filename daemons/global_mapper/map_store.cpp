@@ -23,12 +23,13 @@ MapStore::MapStore(const MapStoreParams& params) : params_(params) {
   std::error_code error;
   std::filesystem::create_directories(params_.directory, error);
   if (error) problem_ = params_.directory + ": " + error.message();
-  journal_ = std::make_unique<Journal>(params_.directory + "/journal", params_.max_journal_bytes);
 }
 
 size_t MapStore::Resume(int64_t utime, GlobalMapper& mapper) {
-  if (!journal_) return 0;
-  const JournalContents contents = ReadJournal(params_.directory + "/journal");
+  if (params_.directory.empty()) return 0;
+  const std::string file = params_.directory + (mapper.localising() ? "/place" : "/journal");
+  journal_ = std::make_unique<Journal>(file, params_.max_journal_bytes);
+  const JournalContents contents = ReadJournal(file);
   const int64_t ended = contents.records.empty() ? 0 : TimeOf(contents.records.back());
   const double ago = SecondsBetween(ended, utime);
   if (ago <= 0.0 || ago > params_.resume_within) {

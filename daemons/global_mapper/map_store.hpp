@@ -17,7 +17,8 @@ struct MapStoreParams {
 };
 
 /// Where the map lies between two lives of the daemon, and after the drive: `journal` while it is
-/// made, `map.yaml` once the loop is closed and after each lap.
+/// made, `map.yaml` once the loop is closed and after each lap; `place` holds the car's place in a
+/// known map.
 class MapStore {
  public:
   explicit MapStore(const MapStoreParams& params);

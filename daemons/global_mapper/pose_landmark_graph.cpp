@@ -261,13 +261,21 @@ bool PoseLandmarkGraph::SolveWindow() {
   return Run(problem, params_.window);
 }
 
-bool PoseLandmarkGraph::SolveAll() {
+bool PoseLandmarkGraph::SolveAll() { return SolveAll(params_.full); }
+
+bool PoseLandmarkGraph::SolveAllTrustingSightings() {
+  SolverParams params = params_.full;
+  params.loss_scale = 0.0;
+  return SolveAll(params);
+}
+
+bool PoseLandmarkGraph::SolveAll(const SolverParams& params) {
   LeastSquaresProblem problem;
   AddTerms(first_pose_, problem);
   std::vector<size_t> all(landmarks_.size());
   std::iota(all.begin(), all.end(), 0);
   AddPrior(true, all, problem);
-  const bool good = Run(problem, params_.full);
+  const bool good = Run(problem, params);
   RefreezeAll();
   return good;
 }

@@ -49,6 +49,9 @@ class PoseLandmarkGraph {
   /// Each returns false, and leaves everything as it was, where the solver fails.
   bool SolveWindow();
   bool SolveAll();
+  /// The same without a robust loss: for sightings that are known to be right however far off they
+  /// look, where a loop was found.
+  bool SolveAllTrustingSightings();
   /// Takes the oldest pose out, at least two must be there.
   void MarginaliseOldest();
 
@@ -109,6 +112,7 @@ class PoseLandmarkGraph {
   void RefreezeAll();
   void AddTerms(size_t from, LeastSquaresProblem& problem);
   void AddPrior(bool with_pose, const std::vector<size_t>& landmarks, LeastSquaresProblem& problem);
+  bool SolveAll(const SolverParams& params);
   bool Run(LeastSquaresProblem& problem, const SolverParams& params);
   Eigen::SparseMatrix<double> Information(const std::vector<Eigen::Index>& first_of) const;
 

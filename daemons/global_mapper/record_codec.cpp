@@ -7,7 +7,10 @@
 namespace hairpin {
 namespace {
 
-enum class Kind : int64_t { kKeyframe = 1, kMerge = 2, kRemoval = 3 };
+enum class Kind : int64_t { kKeyframe = 1, kMerge = 2, kRemoval = 3, kPlace = 4 };
+
+constexpr int64_t kLoop = 1;  // bits of a merge
+constexpr int64_t kByShape = 2;
 
 static_assert(std::endian::native == std::endian::little, "records are little-endian");
 
@@ -128,7 +131,7 @@ KeyframeRecord TakeKeyframe(Reader& reader) {
 void Put(const MergeRecord& merge, Writer& writer) {
   writer.Put(static_cast<int64_t>(Kind::kMerge));
   writer.Put(merge.utime);
-  writer.Put(int64_t{merge.loop ? 1 : 0});
+  writer.Put(int64_t{(merge.loop ? kLoop : 0) + (merge.by_shape ? kByShape : 0)});
   writer.Put(static_cast<int64_t>(merge.pairs.size()));
   for (const auto& [landmark, into] : merge.pairs) {
     writer.Put(landmark);
@@ -139,13 +142,40 @@ void Put(const MergeRecord& merge, Writer& writer) {
 MergeRecord TakeMerge(Reader& reader) {
   MergeRecord merge;
   merge.utime = reader.Integer();
-  merge.loop = reader.Integer() != 0;
+  const int64_t how = reader.Integer();
+  merge.loop = (how & kLoop) != 0;
+  merge.by_shape = (how & kByShape) != 0;
   const size_t count = reader.Count(2 * sizeof(int64_t));
   for (size_t i = 0; i < count; ++i) {
     const int64_t landmark = reader.Integer();
     merge.pairs.emplace_back(landmark, reader.Integer());
   }
   return merge;
+}
+
+void Put(const PlaceRecord& place, Writer& writer) {
+  writer.Put(static_cast<int64_t>(Kind::kPlace));
+  writer.Put(place.utime);
+  writer.Put(place.epoch);
+  writer.Put(place.T_local_base);
+  writer.Put(place.T_map_base);
+  writer.PutAll(place.covariance.reshaped());
+  writer.Put(place.laps);
+  writer.Put(place.odometer);
+  writer.Put(place.lap_odometer);
+}
+
+PlaceRecord TakePlace(Reader& reader) {
+  PlaceRecord place;
+  place.utime = reader.Integer();
+  place.epoch = reader.Integer();
+  place.T_local_base = reader.Pose();
+  place.T_map_base = reader.Pose();
+  reader.Fill(place.covariance.reshaped());
+  place.laps = reader.Integer();
+  place.odometer = reader.Number();
+  place.lap_odometer = reader.Number();
+  return place;
 }
 
 void Put(const RemovalRecord& removal, Writer& writer) {
@@ -183,6 +213,9 @@ std::optional<MapRecord> DecodeMapRecord(std::span<const uint8_t> bytes) {
       break;
     case Kind::kRemoval:
       record = TakeRemoval(reader);
+      break;
+    case Kind::kPlace:
+      record = TakePlace(reader);
       break;
   }
   if (!reader.done()) return std::nullopt;

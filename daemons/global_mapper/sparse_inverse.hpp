@@ -19,9 +19,9 @@ class SparseInverse {
   double operator()(Eigen::Index row, Eigen::Index column) const;
 
  private:
-  Eigen::VectorXi place_;           // of a variable in the order of elimination
-  Eigen::SparseMatrix<double> Z_;   // strictly lower triangle, in that order
-  Eigen::VectorXd diagonal_;        // the same
+  Eigen::VectorXi place_;          // of a variable in the order of elimination
+  Eigen::SparseMatrix<double> Z_;  // strictly lower triangle, in that order
+  Eigen::VectorXd diagonal_;       // the same
 };
 
 }  // namespace hairpin

@@ -48,6 +48,9 @@ void TrackMapParams::Validate() const {
   RequireGlobalMap(association_gate > 0.0, "association_gate must be > 0");
   RequireGlobalMap(memory_distance > 0.0, "memory_distance must be > 0");
   loop.constellation.Validate();
+  loop.gap.Validate();
+  RequireGlobalMap(loop.min_pairs_by_shape >= loop.constellation.min_pairs,
+                   "loop min_pairs_by_shape must be >= min_pairs");
   RequireGlobalMap(loop.min_distance > 0.0, "loop min_distance must be > 0");
   RequireGlobalMap(loop.recent_distance > 0.0, "loop recent_distance must be > 0");
   RequireGlobalMap(loop.search_radius > 0.0, "loop search_radius must be > 0");
@@ -65,12 +68,27 @@ bool TrackMap::IsKeyframe(const Pose2& T_last_base) const {
          std::abs(T_last_base.yaw) >= params_.keyframe_angle;
 }
 
-TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion) {
+bool TrackMap::IsGap(const Eigen::Matrix3d& covariance) const {
+  const double tolerated = params_.association_gate / 3.0;
+  const double turned = params_.filter.max_range * params_.filter.max_range * covariance(2, 2);
+  return covariance.topLeftCorner<2, 2>().trace() + turned > tolerated * tolerated;
+}
+
+void TrackMap::NoteGap(const KeyframeRecord& keyframe) {
+  if (empty() || keyframe.epoch == last_->epoch || !IsGap(keyframe.covariance)) return;
+  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+  G.topLeftCorner<2, 2>() = last_pose().rotation();
+  gap_ = Gap{graph_.num_landmarks(), graph_.end_pose(), odometer_,
+             G * keyframe.covariance * G.transpose()};
+}
+
+TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion, bool whole) {
   KeyframeRecord keyframe{map.utime,         map.epoch, map.T_local_base, {}, motion.T_from_to,
                           motion.covariance, {}};
   if (!empty()) keyframe.T_map_base = last_pose() * motion.T_from_to;
+  NoteGap(keyframe);
   table_.Follow(map);
-  keyframe.sightings = Associate(map, keyframe.T_map_base);
+  keyframe.sightings = Associate(map, keyframe.T_map_base, whole);
   Apply(keyframe);
   Step step;
   step.solved = SolveAfterKeyframe();
@@ -81,21 +99,22 @@ TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion)
     Apply(*removal);
     step.records.emplace_back(*removal);
   }
-  if (!closed_) TryToClose(step);
+  TryToClose(step);
   return step;
 }
 
 void TrackMap::Replay(const MapRecord& record) {
   if (const auto* keyframe = std::get_if<KeyframeRecord>(&record)) {
+    NoteGap(*keyframe);
     Apply(*keyframe);
     SolveAfterKeyframe();
     last_->T_map_base = last_pose();
   } else if (const auto* merge = std::get_if<MergeRecord>(&record)) {
     Apply(*merge);
-    graph_.SolveAll();
+    SolveMerged(*merge);
     Settle();
-  } else {
-    Apply(std::get<RemovalRecord>(record));
+  } else if (const auto* removal = std::get_if<RemovalRecord>(&record)) {
+    Apply(*removal);
   }
 }
 
@@ -107,10 +126,12 @@ void TrackMap::Settle() {
 
 void TrackMap::Apply(const KeyframeRecord& keyframe) {
   const Motion motion{keyframe.T_before_base, keyframe.covariance};
+  double driven = 0.0;
   if (!empty()) {
     covariance_ = Propagate(covariance_, last_pose(), motion);
     graph_.AddPose({motion.T_from_to, SqrtInformation(motion.covariance)});
-    odometer_ += motion.T_from_to.position().norm();
+    driven = motion.T_from_to.position().norm();
+    odometer_ += driven;
   }
   const Pose2 T_map_base = last_pose();
   for (const SightingRecord& sighting : keyframe.sightings) {
@@ -123,7 +144,9 @@ void TrackMap::Apply(const KeyframeRecord& keyframe) {
     covariances_.back() = PointCovariance(covariance_, T_map_base.rotation() * sighting.position) +
                           RotateCovariance(sighting.covariance, T_map_base.yaw);
   }
-  table_.Add(keyframe, odometer_);
+  table_.Add(keyframe, odometer_,
+             std::max(1, static_cast<int>(driven / params_.keyframe_distance)));
+  if (gap_ && odometer_ - gap_->odometer > params_.memory_distance) gap_.reset();
   last_ = keyframe;
   if (closed_) SharpenCovariance(keyframe);
   // Two at a time, so that a lap that was mapped before the loop closed is caught up with.
@@ -158,6 +181,7 @@ void TrackMap::Apply(const MergeRecord& merge) {
     table_.Merge(landmark, into);
   }
   closed_ = closed_ || merge.loop;
+  if (merge.by_shape && !merge.loop) gap_.reset();
 }
 
 void TrackMap::Apply(const RemovalRecord& removal) {
@@ -180,6 +204,8 @@ std::vector<GlobalCone> TrackMap::Cones() const {
   for (size_t i = 0; i < landmarks.size(); ++i) {
     const LandmarkInfo& info = landmarks[i];
     if (!info.alive || info.num_sightings < params_.min_sightings) continue;
+    // Where it stands is not known as long as nobody knows how the car came there.
+    if (gap_ && i >= gap_->first_landmark) continue;
     cones.push_back({static_cast<int64_t>(i), graph_.landmark(i), covariances_[i],
                      Normalised(info.colour_sum).value_or(kColourUnknown), info.num_observations});
   }

@@ -16,12 +16,15 @@ namespace hairpin {
 
 struct LoopParams {
   ConstellationParams constellation;
-  double min_distance = 0.0;     // m driven before a loop is looked for, > 0
-  double recent_distance = 0.0;  // m driven: landmarks first seen since may be old ones, > 0
-  double search_radius = 0.0;    // m from the car within which old landmarks are looked at, > 0
-  double gate_chi2 = 0.0;        // of the correction, by the covariance of the motion since, > 0
-  double max_rmse = 0.0;         // m, of the merged landmarks' sightings after the solve, > 0
-  double same_cone = 0.0;        // m: nearer landmarks that were never seen together are one, > 0
+  ConstellationParams gap;        // across a gap of the odometry
+  double min_distance = 0.0;      // m driven before a loop is looked for, > 0
+  double recent_distance = 0.0;   // m driven: landmarks first seen since may be old ones, > 0
+  double search_radius = 0.0;     // m from the car within which old landmarks are looked at, > 0
+  double gate_chi2 = 0.0;         // of the correction, by the covariance of the motion since, > 0;
+                                  // beyond it the shape must say it alone:
+  size_t min_pairs_by_shape = 0;  // >= constellation.min_pairs
+  double max_rmse = 0.0;          // m, of the merged landmarks' sightings after the solve, > 0
+  double same_cone = 0.0;         // m: nearer landmarks that were never seen together are one, > 0
 };
 
 struct TrackMapParams {
@@ -57,8 +60,11 @@ class TrackMap {
     std::vector<MapRecord> records;  // what happened, in order
     bool solved = true;              // false: the solver failed, the map stands as before
   };
-  /// Adds a keyframe. `motion`: since the keyframe before; the first one's is not used.
-  Step Observe(const LocalMapInput& map, const Motion& motion);
+  /// Adds a keyframe. `motion`: since the keyframe before; the first one's is not used. `whole`:
+  /// with every cone that the local map is certain of, near or far, seen now or before.
+  Step Observe(const LocalMapInput& map, const Motion& motion, bool whole = false);
+  /// True if a motion is so uncertain that the association gate means nothing after it.
+  bool IsGap(const Eigen::Matrix3d& covariance) const;
   /// Does what Observe() did when it made the record, so that the map comes out the same.
   void Replay(const MapRecord& record);
 
@@ -76,7 +82,17 @@ class TrackMap {
   const PoseLandmarkGraph& graph() const { return graph_; }
 
  private:
-  std::vector<SightingRecord> Associate(const LocalMapInput& map, const Pose2& T_map_base) const;
+  /// A motion across which landmarks are not known again but by their shape: of two epochs of the
+  /// local map with too little between them.
+  struct Gap {
+    size_t first_landmark = 0;  // of those seen since
+    size_t pose = 0;            // number of the first one after it
+    double odometer = 0.0;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  // of the motion, map
+  };
+  void NoteGap(const KeyframeRecord& keyframe);
+  std::vector<SightingRecord> Associate(const LocalMapInput& map, const Pose2& T_map_base,
+                                        bool whole) const;
   struct Candidate;
   std::vector<Candidate> Candidates(const std::vector<const LocalMapCone*>& cones,
                                     const Pose2& T_map_local) const;
@@ -94,9 +110,13 @@ class TrackMap {
   std::vector<int64_t> Landmarks(bool recent) const;
   std::vector<ConstellationPoint> Points(const std::vector<int64_t>& landmarks) const;
   bool IsExplained(const std::vector<int64_t>& recent, const ConstellationMatch& match) const;
-  double CorrectionChi2(const Pose2& correction) const;
+  double CorrectionChi2(const Pose2& correction, const Pose2& pose,
+                        const Eigen::Matrix3d& covariance) const;
+  std::optional<MergeRecord> FindAcrossGap(int64_t utime) const;
   bool FitsAfterSolve(const MergeRecord& merge) const;
   void TryToClose(Step& step);
+  bool TryToMerge(const MergeRecord& merge, Step& step);
+  bool SolveMerged(const MergeRecord& merge);
 
   TrackMapParams params_;
   PoseLandmarkGraph graph_;
@@ -105,6 +125,7 @@ class TrackMap {
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  // of the newest pose, map
   std::vector<Eigen::Matrix2d> covariances_;              // of landmarks, at the last full solve
   double odometer_ = 0.0;
+  std::optional<Gap> gap_;
   bool closed_ = false;
   size_t keyframes_since_full_ = 0;
 };

@@ -26,13 +26,15 @@ struct TrackMap::Candidate {
 };
 
 /// Pairs within the gate. A landmark that was last seen so long ago that drift may exceed the gate
-/// is left to the loop closure, unless the loop is closed.
+/// is left to the loop closure, unless the loop is closed; one from before a gap, until that is
+/// bridged.
 std::vector<TrackMap::Candidate> TrackMap::Candidates(const std::vector<const LocalMapCone*>& cones,
                                                       const Pose2& T_map_local) const {
   std::vector<Candidate> candidates;
   const auto& landmarks = table_.landmarks();
   for (size_t l = 0; l < landmarks.size(); ++l) {
     if (!landmarks[l].alive || table_.IsTaken(static_cast<int64_t>(l))) continue;
+    if (gap_ && l < gap_->first_landmark) continue;
     if (!closed_ && odometer_ - landmarks[l].last_seen > params_.memory_distance) continue;
     for (size_t c = 0; c < cones.size(); ++c) {
       const double distance = (T_map_local * cones[c]->position - graph_.landmark(l)).norm();
@@ -47,13 +49,14 @@ std::vector<TrackMap::Candidate> TrackMap::Candidates(const std::vector<const Lo
   return candidates;
 }
 
-std::vector<SightingRecord> TrackMap::Associate(const LocalMapInput& map,
-                                                const Pose2& T_map_base) const {
+std::vector<SightingRecord> TrackMap::Associate(const LocalMapInput& map, const Pose2& T_map_base,
+                                                bool whole) const {
   const Pose2 T_map_local = T_map_base * map.T_local_base.Inverse();
   std::vector<std::pair<const LocalMapCone*, int64_t>> sightings;
   std::vector<const LocalMapCone*> open;
   for (const LocalMapCone& cone : map.cones) {
-    if (!params_.filter.Accepts(cone, map.T_local_base)) continue;
+    const bool far_too = (whole || gap_ || cone.seen_meanwhile) && params_.filter.IsCertain(cone);
+    if (!far_too && !params_.filter.Accepts(cone, map.T_local_base)) continue;
     if (const auto landmark = table_.Find(cone.id)) {
       sightings.emplace_back(&cone, *landmark);
     } else {

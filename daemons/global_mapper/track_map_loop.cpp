@@ -8,9 +8,18 @@ namespace hairpin {
 namespace {
 
 constexpr double kMinExplained =
-    0.7;                              // share of the cones in known country that must be known ones
-constexpr double kChi2PerPair = 6.0;  // twice the logarithm of the odds that one more pair is worth
+    0.7;                           // share of the cones in known country that must be known ones
+constexpr double kPairOdds = 3.0;  // logarithm of the odds that one more pair is worth
+// Drift is distributed as Student's t with this freedom: near its covariance as a Gaussian, but a
+// wheel that slips or a biased gyro makes more of it than any covariance told.
+constexpr double kDriftFreedom = 4.0;
 constexpr Eigen::Index kPoseSize = 3;
+
+/// How improbable a drift is, in pairs: less the logarithm of its density against that of none.
+double DriftPenalty(double chi2) {
+  return 0.5 * (kDriftFreedom + static_cast<double>(kPoseSize)) * std::log1p(chi2 / kDriftFreedom) /
+         kPairOdds;
+}
 
 }  // namespace
 
@@ -48,14 +57,14 @@ bool TrackMap::IsExplained(const std::vector<int64_t>& recent,
   return static_cast<double>(match.pairs.size()) >= kMinExplained * in_known_country;
 }
 
-/// Of a correction, by the covariance of the motion since the start: an upper bound of that since
-/// the old cones were seen.
-double TrackMap::CorrectionChi2(const Pose2& correction) const {
-  const Pose2 corrected = correction * last_pose();
+/// Of a correction of a pose with this covariance.
+double TrackMap::CorrectionChi2(const Pose2& correction, const Pose2& pose,
+                                const Eigen::Matrix3d& motion) const {
+  const Pose2 corrected = correction * pose;
   Eigen::Matrix<double, kPoseSize, 1> shift;
-  shift << corrected.x - last_pose().x, corrected.y - last_pose().y, correction.yaw;
+  shift << corrected.x - pose.x, corrected.y - pose.y, correction.yaw;
   const double tolerance = params_.loop.constellation.tolerance;
-  Eigen::Matrix3d covariance = covariance_;
+  Eigen::Matrix3d covariance = motion;
   covariance.topLeftCorner<2, 2>() += tolerance * tolerance * Eigen::Matrix2d::Identity();
   covariance(2, 2) += std::pow(tolerance / params_.filter.max_range, 2);
   return shift.dot(covariance.ldlt().solve(shift));
@@ -64,16 +73,46 @@ double TrackMap::CorrectionChi2(const Pose2& correction) const {
 std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
   const std::vector<int64_t> recent = Landmarks(true);
   const std::vector<int64_t> old = Landmarks(false);
-  const auto match =
-      MatchConstellation(Points(recent), Points(old), {}, params_.loop.constellation,
-                         [this](const Pose2& T) { return CorrectionChi2(T) / kChi2PerPair; });
-  if (!match || !IsExplained(recent, *match) ||
-      CorrectionChi2(match->T_to_from) > params_.loop.gate_chi2)
-    return std::nullopt;
+  // By the covariance of the motion since the start: an upper bound of that since the old cones
+  // were seen.
+  const auto chi2 = [this](const Pose2& T) { return CorrectionChi2(T, last_pose(), covariance_); };
+  const auto match = MatchConstellation(Points(recent), Points(old), {}, params_.loop.constellation,
+                                        [&](const Pose2& T) { return DriftPenalty(chi2(T)); });
+  if (!match || !IsExplained(recent, *match)) return std::nullopt;
+  const bool by_shape = chi2(match->T_to_from) > params_.loop.gate_chi2;
+  if (by_shape && match->pairs.size() < params_.loop.min_pairs_by_shape) return std::nullopt;
   // Only back at the start is the lap closed; elsewhere two stretches of the track come near each
   // other.
   const double to_start = (match->T_to_from * last_pose().position()).norm();
-  MergeRecord merge{utime, to_start <= params_.loop.search_radius, {}};
+  const bool loop = to_start <= params_.loop.search_radius;
+  if (by_shape && !loop) return std::nullopt;
+  MergeRecord merge{utime, loop, by_shape, {}};
+  for (const auto& [from, to] : match->pairs) merge.pairs.emplace_back(recent[from], old[to]);
+  return merge;
+}
+
+/// The cones seen since the gap among those seen before it, the nearest ones of each.
+std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime) const {
+  const Pose2 after = graph_.pose(gap_->pose);
+  std::vector<int64_t> recent;
+  std::vector<int64_t> old;
+  const auto distance = [&](int64_t l) {
+    return (graph_.landmark(static_cast<size_t>(l)) - after.position()).norm();
+  };
+  for (size_t i = 0; i < table_.landmarks().size(); ++i) {
+    const auto l = static_cast<int64_t>(i);
+    if (table_.landmarks()[i].alive && distance(l) <= params_.loop.search_radius)
+      (i >= gap_->first_landmark ? recent : old).push_back(l);
+  }
+  for (std::vector<int64_t>* landmarks : {&recent, &old}) {
+    std::stable_sort(landmarks->begin(), landmarks->end(),
+                     [&](int64_t x, int64_t y) { return distance(x) < distance(y); });
+  }
+  const auto match = MatchConstellation(
+      Points(recent), Points(old), {}, params_.loop.gap,
+      [&](const Pose2& T) { return DriftPenalty(CorrectionChi2(T, after, gap_->covariance)); });
+  if (!match) return std::nullopt;
+  MergeRecord merge{utime, false, true, {}};
   for (const auto& [from, to] : match->pairs) merge.pairs.emplace_back(recent[from], old[to]);
   return merge;
 }
@@ -89,7 +128,7 @@ bool TrackMap::FitsAfterSolve(const MergeRecord& merge) const {
 
 /// Landmarks that stand in one place and were never seen side by side.
 std::optional<MergeRecord> TrackMap::FindDoubles(int64_t utime) const {
-  MergeRecord merge{utime, false, {}};
+  MergeRecord merge{utime, false, false, {}};
   std::vector<bool> gone(table_.landmarks().size(), false);
   for (size_t a = 0; a < gone.size(); ++a) {
     for (size_t b = a + 1; b < gone.size(); ++b) {
@@ -106,18 +145,31 @@ std::optional<MergeRecord> TrackMap::FindDoubles(int64_t utime) const {
   return merge;
 }
 
+bool TrackMap::SolveMerged(const MergeRecord& merge) {
+  // From where drift has led, a robust loss would take the true sightings for outliers.
+  if (merge.by_shape && !graph_.SolveAllTrustingSightings()) return false;
+  return graph_.SolveAll();
+}
+
 void TrackMap::TryToClose(Step& step) {
-  if (odometer_ < params_.loop.min_distance) return;
-  const auto loop = FindLoop(last_->utime);
-  if (!loop) return;
-  const TrackMap before = *this;
-  Apply(*loop);
-  step.solved = graph_.SolveAll();
-  if (!step.solved || !FitsAfterSolve(*loop)) {
-    *this = before;
+  if (gap_) {
+    if (const auto merge = FindAcrossGap(last_->utime)) TryToMerge(*merge, step);
     return;
   }
-  step.records.emplace_back(*loop);
+  if (closed_ || odometer_ < params_.loop.min_distance) return;
+  if (const auto loop = FindLoop(last_->utime)) TryToMerge(*loop, step);
+}
+
+bool TrackMap::TryToMerge(const MergeRecord& merge, Step& step) {
+  const TrackMap before = *this;
+  Apply(merge);
+  const bool solved = SolveMerged(merge);
+  if (!solved || !FitsAfterSolve(merge)) {
+    *this = before;
+    step.solved = step.solved && solved;
+    return false;
+  }
+  step.records.emplace_back(merge);
   if (const auto doubles = FindDoubles(last_->utime)) {
     Apply(*doubles);
     graph_.SolveAll();
@@ -125,6 +177,7 @@ void TrackMap::TryToClose(Step& step) {
   }
   Settle();
   last_->T_map_base = last_pose();
+  return true;
 }
 
 }  // namespace hairpin

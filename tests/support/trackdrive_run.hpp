@@ -21,12 +21,15 @@ inline const MappedTrack& DefaultTrackMapped() {
 }
 
 /// A trackdrive of `laps` on that map, by another seed.
-inline RaceRun RunTrackdrive(int laps, const std::vector<std::string>& faults = {}) {
-  return RunInProcess(
-      DefaultTrackFile(), 2, faults,
-      {"global_mapper.files.known_map=" + DefaultTrackMapped().folder.File("map.yaml"),
-       "simulator.race_control.mission=3", "simulator.referee.laps=" + std::to_string(laps),
-       "mission_manager.trackdrive_laps=" + std::to_string(laps)});
+inline RaceRun RunTrackdrive(int laps, const std::vector<std::string>& faults = {},
+                             std::vector<std::string> overrides = {}) {
+  for (const std::string& override :
+       {"global_mapper.files.known_map=" + DefaultTrackMapped().folder.File("map.yaml"),
+        std::string("simulator.race_control.mission=3"),
+        "simulator.referee.laps=" + std::to_string(laps),
+        "mission_manager.trackdrive_laps=" + std::to_string(laps)})
+    overrides.push_back(override);
+  return RunInProcess(DefaultTrackFile(), 2, faults, overrides);
 }
 
 }  // namespace hairpin

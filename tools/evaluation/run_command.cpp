@@ -31,8 +31,9 @@ void Run(const RunOptions& options) {
 
 void AddRunCommand(CLI::App& app) {
   CLI::App* run = app.add_subcommand(
-      "run", "a recorded drive through lidar_cone_detector, local_mapper and global_mapper: its map "
-             "against a surveyed one");
+      "run",
+      "a recorded drive through lidar_cone_detector, local_mapper and global_mapper: its map "
+      "against a surveyed one");
   const auto options = std::make_shared<RunOptions>();
   run->add_option("--run", options->run, "recorded scans with velocities (.fscn.xz)")->required();
   run->add_option("--map", options->map, "surveyed cones (.csv: x_m,y_m,colour)")->required();

@@ -13,9 +13,10 @@
 namespace hairpin {
 namespace {
 
-constexpr size_t kMaxSectors = 16;          // that local_mapper takes
+constexpr size_t kMaxSectors = 16;           // that local_mapper takes
 constexpr int64_t kVelocityPeriod = 10'000;  // us, VELOCITY's 100 Hz
-constexpr double kMaxInterpolation = 0.2;  // s between two scans; a longer time is a gap in VELOCITY
+constexpr double kMaxInterpolation =
+    0.2;  // s between two scans; a longer time is a gap in VELOCITY
 // The recorder tells no covariance: what velocity_estimator claims of a car with all its sensors.
 constexpr double kVelocitySigma = 0.05;  // m/s
 constexpr double kYawRateSigma = 0.01;   // rad/s
@@ -132,7 +133,8 @@ MappedRun MapRecording(const std::string& run, const std::vector<SurveyedCone>& 
   mapped.loop_closed = chain.newest()->phase == global_map_t::PHASE_LOOP_CLOSED;
   mapped.local_epochs = chain.epochs();
   mapped.comparison = Compare(*chain.newest(), survey, *T_survey_map);
-  for (const Eigen::Vector2d& point : chain.driven()) mapped.driven.push_back(*T_survey_map * point);
+  for (const Eigen::Vector2d& point : chain.driven())
+    mapped.driven.push_back(*T_survey_map * point);
   return mapped;
 }
 

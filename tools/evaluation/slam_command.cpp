@@ -10,15 +10,14 @@
 namespace hairpin {
 namespace {
 
-const std::map<std::string, NoiseReading> kReadings{
-    {"bearing_range", NoiseReading::kBearingRange},
-    {"covariance", NoiseReading::kCovariance},
-    {"information", NoiseReading::kInformation}};
+const std::map<std::string, NoiseReading> kReadings{{"bearing_range", NoiseReading::kBearingRange},
+                                                    {"covariance", NoiseReading::kCovariance},
+                                                    {"information", NoiseReading::kInformation}};
 
 struct SlamOptions {
   std::string file;
   std::string config_dir = "config";
-  NoiseReading noise = NoiseReading::kBearingRange;
+  NoiseReading noise = NoiseReading::kInformation;
   int full_solve_steps = 200;
   bool json = false;
 };
@@ -45,8 +44,8 @@ void AddSlamCommand(CLI::App& app) {
   slam->add_option("--victoria", options->file, "the dataset, in the format of victoria_park.txt")
       ->required();
   slam->add_option("--noise", options->noise,
-                   "what the file's noise figures are: bearing_range (as GTSAM reads them; the "
-                   "default), covariance or information")
+                   "what the file's noise figures are: information (the default), covariance, or "
+                   "bearing_range: covariances, those of landmarks turned into bearing and range")
       ->transform(CLI::Transformer(kReadings));
   slam->add_option("--full-solve-steps", options->full_solve_steps,
                    "steps between two solves of everything where no loop closes")

@@ -1,6 +1,7 @@
 // FAULTS row 35, and a localisation that is lost in mid-lap: the car drives on, on sight.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/clock.hpp"
@@ -31,6 +32,26 @@ TEST(LostLocalisation, MeansDrivingOnSightToTheEndWithoutAStepOfTheSteering) {
     }
   }
   EXPECT_TRUE(before);
+}
+
+TEST(LostLocalisation, IsOverWhereTheMapperComesBack) {
+  const TemporaryFolder folder;
+  const RaceRun run = RunTrackdrive(2, {"global_mapper off at 12 s for 1 s"},
+                                    {"global_mapper.files.directory=" + folder.path()});
+  EXPECT_TRUE(run.outcome.result.finished) << run.outcome.result.reason;
+  EXPECT_EQ(run.outcome.result.cones_hit, 0);
+  EXPECT_EQ(run.outcome.result.lap_times_s.size(), 2u);
+  const int64_t started = AddSeconds(GoTime(run.log), 13.0);
+  for (const global_map_t& map : run.log.global_maps) {
+    if (map.utime > AddSeconds(started, 0.5)) {
+      ASSERT_EQ(map.phase, global_map_t::PHASE_LOCALISED);
+    }
+  }
+  ASSERT_FALSE(run.log.drive_commands.empty());
+  const auto on_line = std::count_if(
+      run.log.drive_commands.begin(), run.log.drive_commands.end(),
+      [&](const auto& c) { return c.utime > AddSeconds(started, 3.0) && c.on_race_line != 0; });
+  EXPECT_GT(on_line, 500);
 }
 
 TEST(Localisation, NeverJumpsByMoreThanTheRaceLineMay) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "daemons/global_mapper/map_file.hpp"
@@ -137,6 +139,51 @@ TEST_F(GlobalMapperNodeTest, KilledAtAnyMomentGoesOnWithEveryLandmark) {
     EXPECT_NEAR(maps_.back().cones[i].x_m, expected.cones[i].position.x(), 0.02);
     EXPECT_NEAR(maps_.back().cones[i].y_m, expected.cones[i].position.y(), 0.02);
   }
+}
+
+TEST_F(GlobalMapperNodeTest, KilledInAKnownMapGoesOnWhereTheCarIs) {
+  DriveTo(LapWorld::kLap + 20.0);
+  Kill();
+  config_.known_map = LoadMapFile(folder_.File("map.yaml"));
+  world_ = LapWorld({0.003, 0.0001});
+  Start();
+  maps_.clear();
+  for (int i = 0; i < 10; ++i) {
+    sender_.Publish(channels::kLocalMap, ToMessage(world_.Drive(0.0)));
+    transport_.Drain();
+  }
+  DriveTo(LapWorld::kLap + 60.0);
+  ASSERT_EQ(maps_.back().phase, global_map_t::PHASE_LOCALISED);
+  ASSERT_EQ(maps_.back().laps, 1);
+  Kill();
+  world_.Drive(10.0);
+  Start();
+  DriveTo(world_.driven() + 0.5);
+  EXPECT_EQ(maps_.back().phase, global_map_t::PHASE_LOCALISED);
+  EXPECT_EQ(maps_.back().laps, 1);
+  const Eigen::Vector2d is(maps_.back().x_m, maps_.back().y_m);
+  EXPECT_LT((is - world_.T_map_base().position()).norm(), 0.5);
+  DriveTo(2.0 * LapWorld::kLap + 10.0);
+  EXPECT_EQ(maps_.back().laps, 2);
+}
+
+// As systemd starts it, from the files as they are shipped.
+TEST(GlobalMapperFiles, LieInTheStateDirectoryAndTheMapOfTheLastDriveIsKnown) {
+  const TemporaryFolder folder;
+  unsetenv("STATE_DIRECTORY");
+  EXPECT_EQ(ShippedConfig().store.directory, "");
+  EXPECT_FALSE(ShippedConfig().known_map);
+  setenv("STATE_DIRECTORY", (folder.path() + ":/elsewhere").c_str(), 1);
+  EXPECT_EQ(ShippedConfig().store.directory, folder.path());
+  EXPECT_FALSE(ShippedConfig().known_map);
+  MapFile map;
+  map.cones.push_back({1, {3.0, 1.0}, 0.01 * Eigen::Matrix2d::Identity(), kColourUnknown, 5});
+  SaveMapFile(map, folder.File("map.yaml"));
+  ASSERT_TRUE(ShippedConfig().known_map);
+  EXPECT_EQ(ShippedConfig().known_map->cones.size(), 1u);
+  std::ofstream(folder.File("map.yaml")) << "no map";
+  EXPECT_FALSE(ShippedConfig().known_map);
+  unsetenv("STATE_DIRECTORY");
 }
 
 TEST_F(GlobalMapperNodeTest, DoesNotTakeTheJournalOfAnotherDrive) {

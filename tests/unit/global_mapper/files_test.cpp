@@ -27,8 +27,11 @@ KeyframeRecord Keyframe(int64_t utime) {
 }
 
 std::vector<MapRecord> Records() {
-  return {Keyframe(1'000'000), Keyframe(2'000'000), MergeRecord{2'500'000, true, {{9, 1}, {8, 2}}},
-          RemovalRecord{3'000'000, {4, 5}}};
+  PlaceRecord place{3'500'000, 7, {1.0, 2.0, 0.3}, {1.1, 2.1, 0.31}, {}, 4, 812.5, 790.0};
+  place.covariance << 0.01, 0.001, 0.0, 0.001, 0.02, 0.0, 0.0, 0.0, 0.003;
+  return {Keyframe(1'000'000), Keyframe(2'000'000),
+          MergeRecord{2'500'000, true, true, {{9, 1}, {8, 2}}}, RemovalRecord{3'000'000, {4, 5}},
+          place};
 }
 
 std::string Bytes(const std::string& file) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "tests/unit/global_mapper/lap_world.hpp"
 
 namespace hairpin {
@@ -40,7 +43,7 @@ TEST(GlobalMapper, ClosesTheLoopAndMapsEveryConeOnce) {
 
 // A car with poor odometry that knows it: what its covariance calls impossible is no loop.
 TEST(GlobalMapper, ClosesTheLoopWhereTheDriftExceedsTheConeSpacing) {
-  LapWorld world({0.05, 0.002});
+  LapWorld world({0.08, 0.003});
   GlobalMapperParams params = ShippedConfig().params;
   params.odometry.position_sigma = 0.04;
   params.odometry.yaw_sigma = 0.003;
@@ -52,6 +55,42 @@ TEST(GlobalMapper, ClosesTheLoopWhereTheDriftExceedsTheConeSpacing) {
   EXPECT_EQ(after.phase, MapPhase::kLoopClosed);
   EXPECT_EQ(after.cones.size(), world.cones().size());
   EXPECT_LT((after.T_map_base.position() - world.T_map_base().position()).norm(), 0.5);
+}
+
+// A car that does not know how poor its odometry is: the shape alone must say it.
+TEST(GlobalMapper, ClosesTheLoopByShapeWhereTheDriftIsBeyondItsCovariance) {
+  LapWorld world({0.05, 0.002});
+  GlobalMapper mapper(ShippedConfig().params);
+  const GlobalMapEstimate before = DriveTo(LapWorld::kLap - 15.0, world, mapper);
+  ASSERT_EQ(before.phase, MapPhase::kMapping);
+  EXPECT_GT((before.T_map_base.position() - world.T_map_base().position()).norm(), 4.5);
+  const GlobalMapEstimate after = DriveTo(LapWorld::kLap + 30.0, world, mapper);
+  EXPECT_EQ(after.phase, MapPhase::kLoopClosed);
+  EXPECT_EQ(after.cones.size(), world.cones().size());
+  EXPECT_LT((after.T_map_base.position() - world.T_map_base().position()).norm(), 1.0);
+}
+
+// Nothing was heard for 0.8 s in a bend: neither where the car was nor how it turned.
+TEST(GlobalMapper, BridgesAGapOfTheOdometryByTheShapeOfTheCones) {
+  LapWorld world({0.002, 0.0});
+  GlobalMapper mapper(ShippedConfig().params);
+  std::vector<MapRecord> records;
+  DriveTo(60.0, world, mapper, &records);
+  const Eigen::Matrix3d covariance = 1e-4 * Eigen::Matrix3d::Identity();
+  mapper.AddVelocity(world.utime(), {LapWorld::kSpeed, 0.0, 0.0}, covariance);
+  world.Drive(8.0);
+  mapper.AddVelocity(world.utime(), {LapWorld::kSpeed, 0.0, 0.0}, covariance);
+  world.Restart();
+  const GlobalMapEstimate lost = *mapper.AddLocalMap(world.Drive(0.0)).estimate;
+  EXPECT_GT((lost.T_map_base.position() - world.T_map_base().position()).norm(), 0.6);
+  const GlobalMapEstimate after = DriveTo(80.0, world, mapper, &records);
+  EXPECT_LT((after.T_map_base.position() - world.T_map_base().position()).norm(), 0.5);
+  EXPECT_LT(WorstError(after, world), 0.5);
+  const bool bridged = std::any_of(records.begin(), records.end(), [](const MapRecord& record) {
+    const auto* merge = std::get_if<MergeRecord>(&record);
+    return merge != nullptr && merge->by_shape && !merge->loop;
+  });
+  EXPECT_TRUE(bridged);
 }
 
 TEST(GlobalMapper, DoesNotCloseALoopWhereOtherConesStand) {
@@ -146,6 +185,36 @@ TEST(GlobalMapper, BoundsItsWorkUnderPhantomsAndAnEmptyMap) {
     ASSERT_TRUE(estimate);
     EXPECT_LE(estimate->cones.size(), params.map.max_landmarks);
     EXPECT_NEAR(estimate->T_map_base.x, 2.0 * k, 0.5);
+  }
+}
+
+// Cones that the car passed while nobody mapped are still in the local map.
+TEST(GlobalMapper, TakesWhatWasPassedWhileItWasAway) {
+  LapWorld world({0.001, 0.0});
+  GlobalMapper first(ShippedConfig().params);
+  std::vector<MapRecord> records;
+  DriveTo(40.0, world, first, &records);
+  LocalMapInput map;
+  std::map<int64_t, LocalMapCone> passed;
+  for (int i = 0; i < 24; ++i) {
+    map = world.Drive(kStep);
+    for (const LocalMapCone& cone : map.cones) {
+      passed[cone.id] = cone;
+      passed[cone.id].last_seen_utime = map.utime;
+      passed[cone.id].seen_now = false;
+    }
+  }
+  for (const LocalMapCone& cone : map.cones) passed.erase(cone.id);
+  for (const auto& [id, cone] : passed) map.cones.push_back(cone);
+  GlobalMapper second(ShippedConfig().params);
+  second.Replay(records);
+  const auto estimate = second.AddLocalMap(map).estimate;
+  ASSERT_TRUE(estimate);
+  for (const auto& [id, cone] : passed) {
+    const Eigen::Vector2d position = estimate->T_map_local * cone.position;
+    EXPECT_TRUE(std::any_of(estimate->cones.begin(), estimate->cones.end(), [&](const auto& c) {
+      return (c.position - position).norm() < 0.5;
+    })) << position.transpose();
   }
 }
 
