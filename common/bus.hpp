@@ -61,6 +61,8 @@ class Bus {
   int64_t newest_utime() const { return newest_utime_; }
   const std::string& daemon() const { return daemon_; }
   int64_t boot_id() const { return boot_id_; }
+  /// Of the transport.
+  const std::string& url() const { return transport_.url(); }
   /// What was heard on each subscribed channel.
   std::vector<channel_health_t> Health() const;
 

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
+
+#include "common/crc32c.hpp"
 
 namespace hairpin {
 
@@ -170,6 +173,15 @@ Config Config::Sibling(const std::string& name) const {
   return Config(document_, document_->AddLevel(MappingOf(ReadFile(file), file), file, ""));
 }
 
+int64_t Config::SiblingHash(const std::string& name) const {
+  std::ifstream stream(document_->directory + "/" + name + ".yaml", std::ios::binary);
+  if (!stream) return 0;
+  const std::string text((std::istreambuf_iterator<char>(stream)),
+                         std::istreambuf_iterator<char>());
+  const auto* bytes = reinterpret_cast<const uint8_t*>(text.data());
+  return int64_t{1} << 32 | int64_t{Crc32c(bytes, text.size())};
+}
+
 bool Config::Has(const std::string& key) const { return level_->values.contains(key); }
 
 namespace {
@@ -274,6 +286,30 @@ std::vector<double> Config::Numbers(const std::string& key, size_t size, const R
     values[i] = Within(range);
   }
   return values;
+}
+
+std::vector<std::string> Config::Texts(const std::string& key,
+                                       const std::vector<std::string>& allowed) const {
+  int line = 0;
+  const YAML::Node node = Find(*document_, *level_, key, &line);
+  if (!node.IsDefined()) return {};
+  if (!node.IsSequence()) {
+    document_->Report(*level_, line, level_->path + key + ": " + Describe(node) + " is no list");
+    return {};
+  }
+  std::vector<std::string> texts;
+  for (const YAML::Node& element : node) {
+    const std::string text = element.IsScalar() ? element.Scalar() : "";
+    if (std::find(allowed.begin(), allowed.end(), text) != allowed.end()) {
+      texts.push_back(text);
+      continue;
+    }
+    const std::string nearest = Nearest(text, allowed);
+    const std::string hint = nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+    document_->Report(*level_, element.Mark().line + 1,
+                      level_->path + key + ": " + Describe(element) + " is unknown" + hint);
+  }
+  return texts;
 }
 
 Config Config::Section(const std::string& key) const {

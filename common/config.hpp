@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -46,6 +47,9 @@ class Config {
 
   /// Another file of the same folder, such as "car". Its problems are reported with these.
   Config Sibling(const std::string& name) const;
+  /// Tells one text of such a file from another: CRC32C of its bytes and one more bit, 0 where it
+  /// cannot be read.
+  int64_t SiblingHash(const std::string& name) const;
 
   double Number(const std::string& key, const Range& range) const;
   int Integer(const std::string& key, int min, int max) const;
@@ -53,6 +57,9 @@ class Config {
   std::string Text(const std::string& key) const;
   /// A list of `size` numbers; any number from 1 on where size is 0.
   std::vector<double> Numbers(const std::string& key, size_t size, const Range& range) const;
+  /// A list of any number of texts, each one of `allowed`.
+  std::vector<std::string> Texts(const std::string& key,
+                                 const std::vector<std::string>& allowed) const;
   Config Section(const std::string& key) const;
   bool Has(const std::string& key) const;
 

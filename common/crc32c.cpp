@@ -1,6 +1,11 @@
 #include "common/crc32c.hpp"
 
 #include <array>
+#include <cstring>
+
+#ifdef __x86_64__
+#include <nmmintrin.h>
+#endif
 
 namespace hairpin {
 namespace {
@@ -39,9 +44,35 @@ constexpr uint32_t Lookup(size_t slice, uint32_t word) {
          kTables[slice - 2][word >> 16 & 0xffu] ^ kTables[slice - 3][word >> 24];
 }
 
+#ifdef __x86_64__
+__attribute__((target("sse4.2"))) uint32_t ByInstruction(const uint8_t* data, size_t size) {
+  uint64_t crc = 0xffffffffu;
+  for (; size >= sizeof crc; data += sizeof crc, size -= sizeof crc) {
+    uint64_t word;
+    std::memcpy(&word, data, sizeof word);
+    crc = _mm_crc32_u64(crc, word);
+  }
+  auto rest = static_cast<uint32_t>(crc);
+  for (; size > 0; ++data, --size) rest = _mm_crc32_u8(rest, *data);
+  return ~rest;
+}
+
+bool HasInstruction() {
+  static const bool has = __builtin_cpu_supports("sse4.2") != 0;
+  return has;
+}
+#endif
+
 }  // namespace
 
 uint32_t Crc32c(const uint8_t* data, size_t size) {
+#ifdef __x86_64__
+  if (HasInstruction()) return ByInstruction(data, size);
+#endif
+  return Crc32cByTables(data, size);
+}
+
+uint32_t Crc32cByTables(const uint8_t* data, size_t size) {
   uint32_t crc = 0xffffffffu;
   for (; size >= kSlices; data += kSlices, size -= kSlices)
     crc = Lookup(7, Word(data) ^ crc) ^ Lookup(3, Word(data + 4));

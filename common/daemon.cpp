@@ -85,7 +85,7 @@ void Work(const DaemonSpec& spec, const Options& options, const NodeFactory& fac
   const Config config = Config::Load(options.config_dir, spec.name, options.overrides);
   Transport transport(options.lcm_url);
   Bus bus(transport, NameOnBus(spec, options), RandomBootId());
-  Heartbeat heartbeat(bus);
+  Heartbeat heartbeat(bus, config.SiblingHash("car"));
   const std::unique_ptr<HostedNode> node = factory(bus, config);
   sd_notify(0, "READY=1");
   const MonotonicClock clock;
@@ -117,7 +117,7 @@ int Fail(const std::string& name, const std::string& problems, int code) {
 
 const char* BuildId() { return HAIRPIN_BUILD; }
 
-Heartbeat::Heartbeat(Bus& bus) : bus_(bus) {
+Heartbeat::Heartbeat(Bus& bus, int64_t car_hash) : bus_(bus), car_hash_(car_hash) {
   bus_.OnDataTime([this](int64_t utime) { OnDataTime(utime); });
 }
 
@@ -133,6 +133,7 @@ void Heartbeat::Send() {
   message.daemon = bus_.daemon();
   message.build = BuildId();
   message.types_hash = TypesHash();
+  message.car_hash = car_hash_;
   message.channels = bus_.Health();
   message.num_channels = static_cast<int32_t>(message.channels.size());
   bus_.Publish(channels::kHeartbeat, message);

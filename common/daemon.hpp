@@ -65,13 +65,15 @@ NodeFactory Host(Make make) {
 /// be destroyed with.
 class Heartbeat {
  public:
-  explicit Heartbeat(Bus& bus);
+  /// `car_hash`: Config::SiblingHash("car").
+  Heartbeat(Bus& bus, int64_t car_hash);
   /// For when nothing is heard: sends one now.
   void Send();
 
  private:
   void OnDataTime(int64_t utime);
   Bus& bus_;
+  int64_t car_hash_;
   int64_t last_sent_utime_ = 0;
 };
 

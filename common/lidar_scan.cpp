@@ -13,16 +13,16 @@ namespace {
 constexpr size_t kPointSize = 10;
 constexpr size_t kMaxPoints = 1'000'000;  // several times what any sensor here returns
 
-// Rounds to the nearest, halves away from zero, to an integer that fits into T. The comparison is
-// false for NaN.
+// Rounds to the nearest, halves away from zero, to an integer that fits into T: conversion cuts the
+// fraction off. The comparison is false for NaN.
 template <class T>
 T Steps(float value, float steps_per_unit, const char* what) {
   const float steps = value * steps_per_unit;
-  const float nearest = std::trunc(steps + std::copysign(0.5f, steps));
-  const bool fits = nearest >= static_cast<float>(std::numeric_limits<T>::min()) &&
-                    nearest <= static_cast<float>(std::numeric_limits<T>::max());
+  const float beyond = steps + std::copysign(0.5f, steps);
+  const bool fits = beyond > static_cast<float>(std::numeric_limits<T>::min()) - 1.0f &&
+                    beyond < static_cast<float>(std::numeric_limits<T>::max()) + 1.0f;
   if (!fits) throw std::invalid_argument(std::string("PackPoints: ") + what + " out of range");
-  return static_cast<T>(nearest);
+  return static_cast<T>(static_cast<int32_t>(beyond));
 }
 
 void Write(uint8_t* bytes, uint16_t value) {

@@ -136,6 +136,7 @@ std::vector<CanFrame> CanGateway::Due(int64_t wall) {
 
 DriveOrder CanGateway::Order() const {
   DriveOrder order = order_;
+  if (supervision_.manual()) return {logger_.steering.angle, {}, 0.0};
   if (!supervision_.driving() && supervision_.emergency().empty())
     return {logger_.steering.angle, {}, params_.parking_brake};
   if (supervision_.emergency().empty() && supervision_.stop().empty()) return order;
@@ -176,8 +177,9 @@ void CanGateway::AppendOrders(int64_t now, std::vector<CanFrame>& frames) {
                                .left_nm = order.wheel_torque[2],
                                .right_nm = order.wheel_torque[3],
                                .enable = moves}));
-  frames.push_back(
-      brake_.Pack({.command_time = time, .level_percent = 100.0 * order.brake, .enable = true}));
+  frames.push_back(brake_.Pack({.command_time = time,
+                                .level_percent = 100.0 * order.brake,
+                                .enable = !supervision_.manual()}));
   if (!supervision_.heartbeat()) return;
   toggle_ = !toggle_;
   frames.push_back(heartbeat_.Pack({.command_time = ToSampleTime(now), .toggle = toggle_}));
@@ -189,7 +191,7 @@ void CanGateway::AppendStatus(int64_t now, std::vector<CanFrame>& frames) {
   status.command_time = ToSampleTime(now);
   status.state_time = ToSampleTime(as.utime);
   status.as_state = supervision_.emergency().empty()
-                        ? static_cast<uint8_t>(std::clamp(as.state, 0, 5))
+                        ? static_cast<uint8_t>(std::clamp(as.state, 0, 6))
                         : static_cast<uint8_t>(as_state_t::STATE_EMERGENCY);
   status.mission_finished = as.mission_finished;
   status.deadman_stage = static_cast<uint8_t>(supervision_.stage());

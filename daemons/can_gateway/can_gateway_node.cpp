@@ -38,7 +38,6 @@ motors_t ToMessage(const MotorsSample& sample) {
 }
 
 vehicle_t ToMessage(const VehicleSample& sample) {
-  constexpr int kEbsActivated = 3;
   vehicle_t message{};
   message.utime = sample.utime;
   message.mission = sample.mission;
@@ -47,7 +46,7 @@ vehicle_t ToMessage(const VehicleSample& sample) {
   message.shutdown_circuit_closed = sample.shutdown_circuit_closed;
   message.brakes_engaged = sample.brakes_engaged;
   message.brakes_ok = sample.brakes_ok;
-  message.ebs_activated = sample.ebs_state == kEbsActivated;
+  message.ebs_state = sample.ebs_state;
   message.res_go = sample.res_go;
   message.res_stop = sample.res_stop;
   message.speed_mps = sample.speed;

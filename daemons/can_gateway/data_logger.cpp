@@ -5,11 +5,15 @@
 #include <numbers>
 #include <numeric>
 
+#include "hairpin/as_state_t.hpp"
+#include "hairpin/vehicle_t.hpp"
+
 namespace hairpin {
 namespace {
 
 constexpr double kKmhPerMps = 3.6;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr uint8_t kBrakeDisengaged = 1;
 constexpr uint8_t kBrakeEngaged = 2;
 constexpr uint8_t kBrakeAvailable = 3;
 
@@ -44,13 +48,30 @@ CanFrame Accelerations(const LoggerInput& input) {
   return dbc::Pack(dbc::Saturated(m));
 }
 
+// The rules' frame knows no manual driving: the autonomous system is off then, without a mission.
+uint8_t AsStatus(int state) {
+  if (state == as_state_t::STATE_MANUAL) return as_state_t::STATE_OFF;
+  return Rounded<uint8_t>(state, as_state_t::STATE_UNKNOWN, as_state_t::STATE_FINISHED);
+}
+
+uint8_t Mission(int mission) {
+  const bool known =
+      mission >= vehicle_t::MISSION_ACCELERATION && mission <= vehicle_t::MISSION_AUTOCROSS;
+  return known ? static_cast<uint8_t>(mission) : uint8_t{vehicle_t::MISSION_UNKNOWN};
+}
+
+uint8_t ServiceBrake(const VehicleSample& vehicle) {
+  if (vehicle.brakes_engaged) return kBrakeEngaged;
+  return vehicle.brakes_ok ? kBrakeAvailable : kBrakeDisengaged;
+}
+
 CanFrame Status(const LoggerInput& input) {
   dbc::DvSystemStatus m;
-  m.as_status = Rounded<uint8_t>(input.as.state, 0.0, 5.0);
+  m.as_status = AsStatus(input.as.state);
   m.ebs_state = Rounded<uint8_t>(input.vehicle.ebs_state, 0.0, 3.0);
-  m.mission = Rounded<uint8_t>(input.vehicle.mission, 0.0, 7.0);
+  m.mission = Mission(input.vehicle.mission);
   m.steering_state = input.steering_on;
-  m.service_brake_state = input.vehicle.brakes_engaged ? kBrakeEngaged : kBrakeAvailable;
+  m.service_brake_state = ServiceBrake(input.vehicle);
   m.lap_counter = Rounded<uint8_t>(input.as.lap, 0.0, 15.0);
   m.cones_count = Rounded<uint8_t>(input.cones, 0.0, 255.0);
   m.cones_count_all = Rounded<uint32_t>(input.cones_all, 0.0, 131071.0);

@@ -44,7 +44,7 @@ struct VehicleSample {
   bool shutdown_circuit_closed = false;
   bool brakes_engaged = false;
   bool brakes_ok = false;
-  int ebs_state = 0;  // 1 unavailable, 2 armed, 3 activated
+  int ebs_state = 0;  // numbered as in vehicle_t
   bool res_go = false;
   bool res_stop = false;
   double speed = 0.0;  // from the wheels, >= 0

@@ -29,6 +29,10 @@ Supervision::Supervision(const SupervisionParams& params) : params_(params) {
 
 bool Supervision::driving() const { return as_.state == as_state_t::STATE_DRIVING; }
 
+bool Supervision::manual() const {
+  return as_.state == as_state_t::STATE_MANUAL && emergency_.empty();
+}
+
 bool Supervision::armed() const { return driving() || as_.state == as_state_t::STATE_READY; }
 
 std::string Supervision::Hear(const AsReport& report, int64_t now) {

@@ -55,6 +55,8 @@ class Supervision {
 
   const AsReport& as() const { return as_; }
   bool driving() const;
+  /// The car is the driver's: no actuator is to act, whatever else is to be said of it.
+  bool manual() const;
   /// Car time since which the car drives.
   int64_t driving_since() const { return driving_since_; }
   bool controlled_stop() const { return supervisor_.stop; }

@@ -24,8 +24,11 @@ std::optional<Eigen::Index> InformationPrior::SlotOf(size_t landmark) const {
 
 Eigen::Index InformationPrior::AddSlot(size_t landmark, const double* position) {
   if (const auto slot = SlotOf(landmark)) return *slot;
-  const Eigen::Index first = H_.rows();
-  H_.conservativeResizeLike(Eigen::MatrixXd::Zero(first + 2, first + 2));
+  const Eigen::Index first = size();
+  if (first + 2 > H_.rows()) {
+    const Eigen::Index room = 2 * H_.rows() + 64;  // copied seldom, so that no pose pays for it
+    H_.conservativeResizeLike(Eigen::MatrixXd::Zero(room, room));
+  }
   b_.conservativeResizeLike(Eigen::VectorXd::Zero(first + 2));
   reference_.conservativeResize(first + 2);
   reference_.tail<2>() = Eigen::Vector2d(position[0], position[1]);
@@ -39,16 +42,17 @@ void InformationPrior::Marginalise(const double* oldest, const double* next,
                                    const OdometryMeasurement& odometry,
                                    const std::vector<Sighting>& sightings) {
   for (const Sighting& sighting : sightings) AddSlot(sighting.landmark, sighting.position);
-  const Eigen::Index size = H_.rows();
+  const Eigen::Index n = size();
+  auto H = H_.topLeftCorner(n, n);
   // Everything that touches the oldest pose: its own block, its row to the rest, its vector.
   // Linear factors are r = r0 + J (x - x0), with d = x - reference: r = (r0 + J (reference - x0)) +
   // J d.
-  Eigen::Matrix3d H00 = H_.topLeftCorner<3, 3>();
+  Eigen::Matrix3d H00 = H.topLeftCorner<3, 3>();
   Eigen::Vector3d b0 = b_.head<3>();
-  Eigen::MatrixXd row = H_.topRows(3);
+  Eigen::MatrixXd row = H.topRows(3);
   row.leftCols<3>().setZero();  // becomes the next pose's
-  H_.topRows(3).setZero();
-  H_.leftCols(3).setZero();
+  H.topRows(3).setZero();
+  H.leftCols(3).setZero();
   b_.head<3>().setZero();
   const Eigen::Vector3d shift = reference_.head<3>() - Eigen::Map<const Eigen::Vector3d>(oldest);
 
@@ -65,7 +69,7 @@ void InformationPrior::Marginalise(const double* oldest, const double* next,
     H00 += w * Jp.transpose() * Jp;
     b0 -= w * Jp.transpose() * r;
     row.middleCols<2>(l) += w * Jp.transpose() * Jl;
-    H_.block<2, 2>(l, l) += w * Jl.transpose() * Jl;
+    H.block<2, 2>(l, l) += w * Jl.transpose() * Jl;
     b_.segment<2>(l) -= w * Jl.transpose() * r;
   }
   Eigen::Vector3d r;
@@ -77,15 +81,14 @@ void InformationPrior::Marginalise(const double* oldest, const double* next,
   H00 += J0.transpose() * J0;
   b0 -= J0.transpose() * r;
   row.leftCols<3>() += J0.transpose() * J1;
-  H_.topLeftCorner<3, 3>() += J1.transpose() * J1;
+  H.topLeftCorner<3, 3>() += J1.transpose() * J1;
   b_.head<3>() -= J1.transpose() * r;
 
   const Eigen::LLT<Eigen::Matrix3d> factor(H00);
   const Eigen::MatrixXd gain = factor.solve(row);  // 3 x size
-  H_.triangularView<Eigen::Lower>() -= row.transpose() * gain;
-  H_.triangularView<Eigen::StrictlyUpper>() = H_.transpose();
+  H.triangularView<Eigen::Lower>() -= row.transpose() * gain;
+  H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
   b_.noalias() -= gain.transpose() * b0;
-  static_cast<void>(size);
 }
 
 void InformationPrior::Merge(size_t landmark, size_t into) {
@@ -102,18 +105,20 @@ void InformationPrior::Merge(size_t landmark, size_t into) {
   }
   // Of x = reference_to + d_to follows d_from = d_to + (reference_to - reference_from).
   const Eigen::Vector2d offset = reference_.segment<2>(*to) - reference_.segment<2>(*from);
-  b_ -= H_.middleCols<2>(*from) * offset;
+  const Eigen::Index n = size();
+  b_ -= H_.middleCols<2>(*from).topRows(n) * offset;
   H_.middleRows<2>(*to) += H_.middleRows<2>(*from).eval();
   H_.middleCols<2>(*to) += H_.middleCols<2>(*from).eval();
   b_.segment<2>(*to) += b_.segment<2>(*from).eval();
-  const Eigen::Index behind = H_.rows() - *from - 2;
+  const Eigen::Index behind = n - *from - 2;
   const auto shrink = [&](auto& vector) {
     vector.segment(*from, behind) = vector.tail(behind).eval();
     vector.conservativeResize(vector.size() - 2);
   };
-  H_.middleRows(*from, behind) = H_.bottomRows(behind).eval();
-  H_.middleCols(*from, behind) = H_.rightCols(behind).eval();
-  H_.conservativeResize(H_.rows() - 2, H_.cols() - 2);
+  H_.middleRows(*from, behind) = H_.middleRows(*from + 2, behind).eval();
+  H_.middleCols(*from, behind) = H_.middleCols(*from + 2, behind).eval();
+  H_.middleRows(n - 2, 2).setZero();
+  H_.middleCols(n - 2, 2).setZero();
   shrink(b_);
   shrink(reference_);
   std::erase(landmarks_, landmark);
@@ -127,7 +132,7 @@ std::optional<InformationPrior::Conditional> InformationPrior::Condition(
   // solve.
   Conditional conditional;
   conditional.information = H_(kept, kept);
-  const Eigen::VectorXd gradient = H_(kept, Eigen::all) * difference - b_(kept);
+  const Eigen::VectorXd gradient = H_(kept, Eigen::seqN(0, size())) * difference - b_(kept);
   const Eigen::LLT<Eigen::MatrixXd> factor(conditional.information);
   if (factor.info() != Eigen::Success) return std::nullopt;
   conditional.mean = reference_(kept) + difference(kept) - factor.solve(gradient);

@@ -47,15 +47,17 @@ class InformationPrior {
   std::optional<Conditional> Condition(bool with_pose, const std::vector<size_t>& landmarks,
                                        const double* pose, const Values& values) const;
 
-  const Eigen::MatrixXd& information() const { return H_; }
+  /// Of (oldest pose, landmarks by slot).
+  auto information() const { return H_.topLeftCorner(size(), size()); }
 
  private:
   std::optional<Eigen::Index> SlotOf(size_t landmark) const;
   Eigen::Index AddSlot(size_t landmark, const double* position);
   std::optional<Conditional> Condition(const std::vector<Eigen::Index>& kept,
                                        const Eigen::VectorXd& difference) const;
+  Eigen::Index size() const { return b_.size(); }
 
-  Eigen::MatrixXd H_;
+  Eigen::MatrixXd H_;  // the first size() rows and columns; the rest is zero, kept for landmarks to come
   Eigen::VectorXd b_;
   Eigen::VectorXd reference_;
   std::vector<size_t> landmarks_;       // by slot

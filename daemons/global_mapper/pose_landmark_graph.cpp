@@ -290,23 +290,4 @@ void PoseLandmarkGraph::MarginaliseOldest() {
   ++first_pose_;
 }
 
-std::vector<Eigen::Matrix2d> PoseLandmarkGraph::LandmarkCovariances() const {
-  PoseLandmarkGraph copy = *this;
-  while (copy.poses_.size() > 1) copy.MarginaliseOldest();
-  // What the last pose sees goes in by a motion to nowhere, of which nothing is known.
-  OdometryMeasurement nowhere;
-  nowhere.sqrt_information = 1e-3 * Eigen::Matrix3d::Identity();
-  copy.AddPose(nowhere);
-  copy.MarginaliseOldest();
-  const Eigen::MatrixXd& H = copy.prior_.information();
-  const Eigen::MatrixXd covariance = H.ldlt().solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
-  std::vector<Eigen::Matrix2d> covariances(landmarks_.size(), Eigen::Matrix2d::Zero());
-  Eigen::Index first = 3;
-  for (const size_t landmark : copy.prior_.landmarks()) {
-    covariances[landmark] = covariance.block<2, 2>(first, first);
-    first += 2;
-  }
-  return covariances;
-}
-
 }  // namespace hairpin

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <array>
 #include <cstddef>
 #include <deque>
@@ -73,7 +74,7 @@ class PoseLandmarkGraph {
   /// any loss function; the prior of marginalised poses is not in it.
   double Cost() const;
   /// Covariances [m^2] of all landmarks given everything, by number; zero for those that are gone.
-  /// Costs as much as marginalising all poses.
+  /// Costs about what two iterations of SolveAll() do.
   std::vector<Eigen::Matrix2d> LandmarkCovariances() const;
 
  private:
@@ -109,6 +110,7 @@ class PoseLandmarkGraph {
   void AddTerms(size_t from, LeastSquaresProblem& problem);
   void AddPrior(bool with_pose, const std::vector<size_t>& landmarks, LeastSquaresProblem& problem);
   bool Run(LeastSquaresProblem& problem, const SolverParams& params);
+  Eigen::SparseMatrix<double> Information(const std::vector<Eigen::Index>& first_of) const;
 
   GraphParams params_;
   size_t first_pose_ = 0;

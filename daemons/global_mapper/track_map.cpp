@@ -100,8 +100,6 @@ void TrackMap::Replay(const MapRecord& record) {
 }
 
 void TrackMap::Settle() {
-  if (empty()) return;
-  graph_.SolveAll();
   covariances_ = graph_.LandmarkCovariances();
   keyframes_since_full_ = 0;
   if (closed_) SharpenCovariance(*last_);

@@ -120,6 +120,7 @@ void TrackMap::TryToClose(Step& step) {
   step.records.emplace_back(*loop);
   if (const auto doubles = FindDoubles(last_->utime)) {
     Apply(*doubles);
+    graph_.SolveAll();
     step.records.emplace_back(*doubles);
   }
   Settle();

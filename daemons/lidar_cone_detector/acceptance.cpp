@@ -12,6 +12,8 @@ Verdict Judge(const ConeEvidence& evidence, const AcceptanceParams& params) {
     return Verdict::kTooMany;
   if (evidence.top < evidence.expected.top - static_cast<float>(params.missing_top))
     return Verdict::kTooLow;
+  if (evidence.top > evidence.height + static_cast<float>(params.excess_top))
+    return Verdict::kTooHigh;
   if (evidence.residual > static_cast<float>(params.max_residual)) return Verdict::kNoCone;
   return Verdict::kCone;
 }

@@ -31,15 +31,19 @@ void Deskew(std::span<const LidarPoint> points, const Eigen::Isometry3f& T_base_
             PointCloud& cloud) {
   const Eigen::Matrix3f rotation = T_base_sensor.linear();
   const Eigen::Vector3f offset = T_base_sensor.translation();
+  size_t count = cloud.size();
+  cloud.Resize(count + points.size());
   for (const LidarPoint& point : points) {
     const Eigen::Vector3f then = rotation * point.position + offset;
     if (body.Contains(then.x(), then.y())) continue;
     const float age = point.age + age_offset;
     const MotionTable::Motion& m = motion.At(age);
-    cloud.Add({m.cosine * then.x() - m.sine * then.y() + m.x,
+    cloud.Set(count++,
+              {m.cosine * then.x() - m.sine * then.y() + m.x,
                m.sine * then.x() + m.cosine * then.y() + m.y, then.z()},
               age, point.intensity, point.ring, sensor);
   }
+  cloud.Resize(count);
 }
 
 }  // namespace hairpin

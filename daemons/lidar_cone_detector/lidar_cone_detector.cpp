@@ -11,6 +11,8 @@ namespace {
 // Gathered about a centre that was only guessed: a return this far off the fitted surface is not
 // the cone's.
 constexpr float kOffSurface = 0.10f;
+// One piece shown to be a part of more shows it of its neighbour in turn; so many in a row.
+constexpr int kPasses = 4;
 
 float MeanRadius(const ConeBody& shape) {
   return static_cast<float>(0.5 * (shape.foot_radius + shape.top_radius));
@@ -22,7 +24,8 @@ LidarConeDetector::LidarConeDetector(const LidarConeDetectorParams& params)
     : params_(params),
       ground_(params.ground),
       clustering_(params.cluster_tolerance, params.max_range),
-      feet_(params.foot_radius, params.max_range + 1.0) {}
+      feet_(params.foot_radius, params.max_range + 1.0),
+      surroundings_(params.surroundings, params.max_range + 1.0) {}
 
 void LidarConeDetector::SelectObstacles(const PointCloud& cloud) {
   const auto low = static_cast<float>(params_.ground_band);
@@ -80,6 +83,7 @@ void LidarConeDetector::Examine(const PointCloud& cloud, std::span<const uint32_
   members_.clear();
   ConeEvidence evidence;
   evidence.residual = fit.residual;
+  evidence.height = static_cast<float>(shape.height);
   for (const uint32_t i : points) {
     const float off =
         (Eigen::Vector2f(cloud.x[i], cloud.y[i]) - fit.axis).norm() - shape.RadiusAt(heights[i]);
@@ -103,6 +107,7 @@ void LidarConeDetector::AddCone(const ConeFit& fit, const ConeEvidence& evidence
   cone.large = large;
   cone.points = members_;
   cone.returns = evidence.returns;
+  cone.top = evidence.top;
   cone.expected = evidence.expected.most;
 }
 
@@ -119,6 +124,29 @@ Eigen::Matrix2f LidarConeDetector::Covariance(const Eigen::Vector2f& axis, float
   const Eigen::Vector2f u = axis.normalized();
   const Eigen::Vector2f v(-u.y(), u.x());
   return along * u * u.transpose() + across * v * v.transpose();
+}
+
+bool LidarConeDetector::RemovePartsOfMore(const PointCloud& cloud) {
+  standing_.clear();
+  for (const DetectedCone& cone : cones_) {
+    const size_t sensor = cloud.sensor[cone.points.front()];
+    standing_.push_back(
+        {cone.position, sensors_[sensor].T_base_sensor.translation().head<2>(), cone.top});
+  }
+  const std::vector<bool>& free = surroundings_.StandFree(cloud, *heights_, standing_);
+  size_t kept = 0, number = 0;  // of the accepted ones
+  for (Candidate& candidate : candidates_) {
+    if (candidate.verdict != Verdict::kCone) continue;
+    if (free[number]) {
+      if (kept != number) cones_[kept] = std::move(cones_[number]);
+      ++kept;
+    } else {
+      candidate.verdict = Verdict::kPartOfMore;
+    }
+    ++number;
+  }
+  cones_.resize(kept);
+  return kept < number;
 }
 
 void LidarConeDetector::RemoveDoubles() {
@@ -160,6 +188,7 @@ const std::vector<DetectedCone>& LidarConeDetector::Detect(
   cones_.clear();
   candidates_.clear();
   for (size_t k = 0; k < feet.size(); ++k) Examine(cloud, feet[k]);
+  for (int pass = 0; pass < kPasses && RemovePartsOfMore(cloud); ++pass) continue;
   RemoveDoubles();
   Done(DetectorStage::kCones);
   return cones_;

@@ -13,6 +13,7 @@
 #include "daemons/lidar_cone_detector/foot_reconstruction.hpp"
 #include "daemons/lidar_cone_detector/ground.hpp"
 #include "daemons/lidar_cone_detector/point_cloud.hpp"
+#include "daemons/lidar_cone_detector/surroundings.hpp"
 
 namespace hairpin {
 
@@ -33,6 +34,7 @@ struct LidarConeDetectorParams {
   ConeBody small_cone, large_cone;
   ConeFitParams fit;
   AcceptanceParams acceptance;
+  SurroundingsParams surroundings;
   double min_distance = 0.0;  // nearer detections are one [m]
   CovarianceParams covariance;
   int max_cones = 0;  // in one scan, nearest first
@@ -45,6 +47,7 @@ struct DetectedCone {
   bool large = false;                                    // stands higher than a small cone can
   std::vector<uint32_t> points;  // its returns, foot included: indices into the cloud
   int returns = 0;               // above the ground's band
+  float top = 0.0f;              // height of the highest [m]
   float expected = 0.0f;         // to the sensor that sees it best
 };
 
@@ -60,7 +63,7 @@ inline constexpr int kNumDetectorStages = 4;  // kStart is none
 
 /// LiDAR points to cones [paper III-B, "LiDAR only"]: adaptive ground removal, Euclidean clusters,
 /// reconstruction of the foot, a cone's surface fitted, acceptance by the expected number of
-/// returns. Keeps its buffers from call to call.
+/// returns and by room about it. Keeps its buffers from call to call.
 class LidarConeDetector {
  public:
   /// Throws std::invalid_argument where a parameter cannot be.
@@ -84,6 +87,8 @@ class LidarConeDetector {
   void Examine(const PointCloud& cloud, std::span<const uint32_t> points);
   void AddCone(const ConeFit& fit, const ConeEvidence& evidence, bool large);
   Eigen::Matrix2f Covariance(const Eigen::Vector2f& axis, float returns) const;
+  /// True if any was removed.
+  bool RemovePartsOfMore(const PointCloud& cloud);
   void RemoveDoubles();
   void Done(DetectorStage stage) const {
     if (listener_) listener_(stage);
@@ -94,6 +99,7 @@ class LidarConeDetector {
   Clustering clustering_;
   FootReconstruction feet_;
   ReturnModel model_;
+  Surroundings surroundings_;
   std::span<const SensorGeometry> sensors_;
   const std::vector<float>* heights_ = nullptr;
   std::vector<uint32_t> obstacles_;
@@ -101,6 +107,7 @@ class LidarConeDetector {
   std::vector<ConeReturn> returns_;  // of the candidate in work
   std::vector<uint32_t> members_;
   std::vector<Candidate> candidates_;
+  std::vector<Surroundings::Standing> standing_;
   std::vector<DetectedCone> cones_;
   std::function<void(DetectorStage)> listener_;
 };

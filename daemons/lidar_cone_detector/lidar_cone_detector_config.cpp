@@ -37,6 +37,7 @@ AcceptanceParams LoadAcceptance(const Config& config) {
   params.max_share = config.Number("max_share", {1.0, 100.0});
   params.spare_returns = config.Number("spare_returns", {0.0, 100.0});
   params.missing_top = config.Number("missing_top_m", kMetre);
+  params.excess_top = config.Number("excess_top_m", kMetre);
   params.max_residual = config.Number("max_residual_m", kMetre);
   return params;
 }
@@ -63,6 +64,10 @@ LidarConeDetectorParams LoadDetectorParams(const Config& config) {
   params.fit.prior_sigma = fit.Number("prior_sigma_m", kMetre);
   const Config acceptance = config.Section("acceptance");
   params.acceptance = LoadAcceptance(acceptance);
+  params.surroundings.body_radius = params.foot_radius;
+  params.surroundings.clearance = acceptance.Number("clearance_m", {0.1, 2.0});
+  params.surroundings.same_height = acceptance.Number("same_height_m", kMetre);
+  params.surroundings.min_returns = acceptance.Integer("min_neighbour_returns", 1, 100);
   params.min_distance = acceptance.Number("min_distance_m", kMetre);
   // CONE_CLUSTERS stays a message of moderate size, and local_mapper refuses sets of more than 200.
   params.max_cones = acceptance.Integer("max_cones", 1, 200);

@@ -2,35 +2,22 @@
 
 namespace hairpin {
 
-void PointCloud::Clear() {
-  x.clear();
-  y.clear();
-  z.clear();
-  age.clear();
-  intensity.clear();
-  ring.clear();
-  sensor.clear();
-}
+void PointCloud::Clear() { Resize(0); }
 
-void PointCloud::Reserve(size_t capacity) {
-  x.reserve(capacity);
-  y.reserve(capacity);
-  z.reserve(capacity);
-  age.reserve(capacity);
-  intensity.reserve(capacity);
-  ring.reserve(capacity);
-  sensor.reserve(capacity);
+void PointCloud::Resize(size_t count) {
+  x.resize(count);
+  y.resize(count);
+  z.resize(count);
+  age.resize(count);
+  intensity.resize(count);
+  ring.resize(count);
+  sensor.resize(count);
 }
 
 void PointCloud::Add(const Eigen::Vector3f& position, float point_age, uint8_t point_intensity,
                      uint8_t point_ring, uint8_t point_sensor) {
-  x.push_back(position.x());
-  y.push_back(position.y());
-  z.push_back(position.z());
-  age.push_back(point_age);
-  intensity.push_back(point_intensity);
-  ring.push_back(point_ring);
-  sensor.push_back(point_sensor);
+  Resize(size() + 1);
+  Set(size() - 1, position, point_age, point_intensity, point_ring, point_sensor);
 }
 
 }  // namespace hairpin

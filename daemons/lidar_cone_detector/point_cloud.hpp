@@ -20,9 +20,20 @@ struct PointCloud {
 
   size_t size() const { return x.size(); }
   void Clear();
-  void Reserve(size_t capacity);
+  void Resize(size_t count);
   void Add(const Eigen::Vector3f& position, float point_age, uint8_t point_intensity,
            uint8_t point_ring, uint8_t point_sensor);
+  /// In place of point `i`.
+  void Set(size_t i, const Eigen::Vector3f& position, float point_age, uint8_t point_intensity,
+           uint8_t point_ring, uint8_t point_sensor) {
+    x[i] = position.x();
+    y[i] = position.y();
+    z[i] = position.z();
+    age[i] = point_age;
+    intensity[i] = point_intensity;
+    ring[i] = point_ring;
+    sensor[i] = point_sensor;
+  }
 };
 
 /// Where a sensor sits and how densely it looks: what the expected number of returns depends on.

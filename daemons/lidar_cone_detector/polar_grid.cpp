@@ -10,27 +10,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// Odd polynomial for atan on [0, 1] (Abramowitz and Stegun 4.4.49, 1964): error below 1e-5.
-inline float AtanOfUnit(float t) {
-  const float u = t * t;
-  return t *
-         (0.9998660f + u * (-0.3302995f + u * (0.1801410f + u * (-0.0851330f + u * 0.0208351f))));
-}
-
-inline float Bearing(float y, float x) {
-  const float ax = std::abs(x);
-  const float ay = std::abs(y);
-  const float large = std::max(ax, ay);
-  const float small = std::min(ax, ay);
-  float angle = AtanOfUnit(small / std::max(large, 1e-20f));
-  angle = ay > ax ? 0.5f * kPi - angle : angle;
-  angle = x < 0.0f ? kPi - angle : angle;
-  return std::copysign(angle, y);
-}
-
 }  // namespace
-
-float FastBearing(float y, float x) { return Bearing(y, x); }
 
 PolarGrid::PolarGrid(const PolarGridParams& params)
     : sectors_(params.sectors),
@@ -56,7 +36,7 @@ void PolarGrid::Fill(const PointCloud& cloud) {
   range_.resize(n);
   const float per_radian = static_cast<float>(sectors_) / (2.0f * kPi);
   for (size_t i = 0; i < n; ++i) {
-    bearing_[i] = (Bearing(cloud.y[i], cloud.x[i]) + kPi) * per_radian;
+    bearing_[i] = (FastBearing(cloud.y[i], cloud.x[i]) + kPi) * per_radian;
     range_[i] = std::sqrt(cloud.x[i] * cloud.x[i] + cloud.y[i] * cloud.y[i]);
   }
   std::fill(lowest_.begin(), lowest_.end(), kEmpty);

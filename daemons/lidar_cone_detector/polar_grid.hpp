@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "daemons/lidar_cone_detector/point_cloud.hpp"
@@ -51,6 +54,18 @@ class PolarGrid {
 
 /// Arc tangent of y/x in (-pi, pi], within 1e-5 rad: a minimax polynomial without a branch, for
 /// loops that the compiler vectorizes. 0 for (0, 0).
-float FastBearing(float y, float x);
+inline float FastBearing(float y, float x) {
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const float ax = std::abs(x);
+  const float ay = std::abs(y);
+  const float t = std::min(ax, ay) / std::max(std::max(ax, ay), 1e-20f);
+  // Odd polynomial for atan on [0, 1] (Abramowitz and Stegun 4.4.49, 1964): error below 1e-5.
+  const float u = t * t;
+  float angle =
+      t * (0.9998660f + u * (-0.3302995f + u * (0.1801410f + u * (-0.0851330f + u * 0.0208351f))));
+  angle = ay > ax ? 0.5f * kPi - angle : angle;
+  angle = x < 0.0f ? kPi - angle : angle;
+  return std::copysign(angle, y);
+}
 
 }  // namespace hairpin

@@ -19,9 +19,14 @@ using Slices = std::array<bool, kSlices>;
 
 Slices SeenSlices(const PointCloud& cloud) {
   std::array<int, kSlices> count{};
-  for (size_t i = 0; i < cloud.size(); ++i) {
-    const float bearing = FastBearing(cloud.y[i], cloud.x[i]) + kPi;
-    ++count[static_cast<size_t>(std::min(static_cast<int>(bearing / kSlice), kSlices - 1))];
+  std::array<int, 1024> slice;  // in blocks, so that several bearings are computed at once
+  for (size_t begin = 0; begin < cloud.size(); begin += slice.size()) {
+    const size_t size = std::min(slice.size(), cloud.size() - begin);
+    const float* x = cloud.x.data() + begin;
+    const float* y = cloud.y.data() + begin;
+    for (size_t i = 0; i < size; ++i)
+      slice[i] = static_cast<int>((FastBearing(y[i], x[i]) + kPi) * (1.0f / kSlice));
+    for (size_t i = 0; i < size; ++i) ++count[static_cast<size_t>(std::min(slice[i], kSlices - 1))];
   }
   Slices seen{};
   for (size_t k = 0; k < seen.size(); ++k) seen[k] = count[k] >= kFewPoints;

@@ -1,25 +1,35 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "hairpin/as_state_t.hpp"
+#include "hairpin/vehicle_t.hpp"
 
 namespace hairpin {
 
-/// Numbered as on the wire and in the rules' data logger frame.
+/// The first five numbered as on the wire and in the rules' data logger frame.
 enum class AsState {
   kOff = as_state_t::STATE_OFF,
   kReady = as_state_t::STATE_READY,
   kDriving = as_state_t::STATE_DRIVING,
   kEmergency = as_state_t::STATE_EMERGENCY,
   kFinished = as_state_t::STATE_FINISHED,
+  kManual = as_state_t::STATE_MANUAL,
+};
+
+/// State of the emergency brake system.
+enum class Ebs {
+  kUnknown = vehicle_t::EBS_UNKNOWN,
+  kUnavailable = vehicle_t::EBS_UNAVAILABLE,
+  kArmed = vehicle_t::EBS_ARMED,
+  kActivated = vehicle_t::EBS_ACTIVATED,
 };
 
 /// What the rules look at, at one time.
 struct AsInput {
   int64_t utime = 0;
+  int32_t mission = vehicle_t::MISSION_UNKNOWN;  // selected
   std::string mission_problem;  // why the mission selected cannot be driven, empty: it can
   std::string system_problem;   // why the software is not ready, empty: it is
   bool master_switch_on = false;
@@ -27,27 +37,40 @@ struct AsInput {
   bool shutdown_circuit_closed = false;
   bool brakes_engaged = false;
   bool brakes_ok = false;
-  bool ebs_activated = false;
+  Ebs ebs = Ebs::kUnknown;
   bool res_go = false;
   bool res_stop = false;
   bool mission_finished = false;
   bool standstill = false;
 };
 
+/// Where the state machine stands.
+struct AsStatus {
+  AsState state = AsState::kOff;
+  std::string reason = "nothing heard yet";      // for people: why the state is what it is
+  int32_t mission = vehicle_t::MISSION_UNKNOWN;  // with which Off was left
+  int64_t ready_utime = 0;                       // when Ready was entered
+  bool go_was_released = false;                  // while Ready
+};
+
 /// The state machine of the autonomous system [Formula Student Germany rules, "AS states"],
-/// evaluated continuously:
+/// evaluated continuously: the status that follows `status` when the car is as in `input`.
 ///
-/// * EBS activated, RES stop, or the shutdown circuit opened while Ready or Driving: Emergency, for
-/// ever. But where
-///   the mission is finished and the car stands, EBS activation and the open circuit mean Finished.
-/// * Mission selected, master switch on, brake system ok, tractive system on? No: Off.
-/// * Ready to drive: Driving. That is set by Go, at the earliest `go_delay` after entering Ready,
-/// pressed while Ready: a
-///   signal that has been on since before is a stuck one. It is lost with Driving.
+/// * EBS activated: Finished where the mission is finished, the car stands, and the RES has not
+///   opened the circuit; else Emergency. Emergency too where the RES stops the car in Ready,
+///   Driving or Finished, or the shutdown circuit opens in Ready or Driving. It is final.
+/// * Mission finished and the car stands: Finished, which is what makes the car engage its EBS. It
+///   is left for Off with the master switch off and the EBS released.
+/// * Mission manual: Manual while the master switch is off, the EBS unavailable and the tractive
+///   system on; from and to Off only.
+/// * Mission selected, master switch on, brake system ok, EBS armed, tractive system on? No: Off.
+///   Off too where another mission is selected than the one that is on.
+/// * Ready to drive: Driving. Go makes it so, at the earliest `go_delay` [s] after entering Ready
+///   and pressed while Ready: a signal that has been on since before is a stuck one.
 /// * Brakes engaged, mission known to this software and software ready: Ready. Else Off.
-///
-/// Until a CAN gateway reports the EBS, standing on the service brake after the mission counts as
-/// Finished too.
+AsStatus NextAsStatus(const AsStatus& status, const AsInput& input, double go_delay);
+
+/// NextAsStatus() over time.
 class AsStateMachine {
  public:
   /// `go_delay` [s]. Throws std::invalid_argument if it is negative.
@@ -56,21 +79,13 @@ class AsStateMachine {
   /// Returns the state after looking at `input`. Times must not decrease.
   AsState Update(const AsInput& input);
 
-  AsState state() const { return state_; }
-  /// For people: why the state is what it is.
-  const std::string& reason() const { return reason_; }
+  AsState state() const { return status_.state; }
+  const std::string& reason() const { return status_.reason; }
+  const AsStatus& status() const { return status_; }
 
  private:
-  AsState Enter(AsState state, const std::string& reason);
-  std::optional<std::string> Emergency(const AsInput& input) const;
-  std::string WhyOff(const AsInput& input) const;
-  AsState WaitForGo(const AsInput& input);
-
   double go_delay_;
-  AsState state_ = AsState::kOff;
-  std::string reason_ = "nothing heard yet";
-  int64_t ready_utime_ = 0;       // when Ready was entered
-  bool go_was_released_ = false;  // while Ready
+  AsStatus status_;
 };
 
 }  // namespace hairpin

@@ -13,6 +13,8 @@ void Check(const LapCounterParams& params) {
   };
   Check(params.gate);
   require(params.min_lap_length > 0.0, "min_lap_length_m must be > 0");
+  require(params.course_length == 0.0 || params.course_length >= params.min_lap_length,
+          "a course must be as long as min_lap_length_m");
   require(params.staging_distance >= 0.0, "staging_distance_m must be >= 0");
   require(params.start_within > params.staging_distance,
           "start_within_m must be > staging_distance_m");
@@ -74,6 +76,7 @@ void LapCounter::MoveBlind(const Pose2& T_own_base, double distance, bool locali
 void LapCounter::Cross(const StartLine& line, double distance) {
   // Also where it does not count: a gate just seen is a better line than the one reckoned.
   reference_ = line;
+  reference_.centre += params_.course_length * line.direction;
   blind_crossing_.reset();
   if (started_ && distance - crossed_distance_ < params_.min_lap_length) return;
   if (started_) ++laps_;

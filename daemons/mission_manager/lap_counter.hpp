@@ -8,7 +8,9 @@ namespace hairpin {
 
 struct LapCounterParams {
   GateParams gate;
-  double min_lap_length = 0.0;    // no lap is shorter [m], > 0
+  double min_lap_length = 0.0;  // no lap is shorter [m], > 0
+  double course_length =
+      0.0;  // the finish lies so far ahead of the start [m]; 0: it is the same line
   double staging_distance = 0.0;  // from the start pose to the line, by the rules [m], >= 0
   double start_within =
       0.0;  // the first lap has begun at the latest after this [m], > staging_distance
@@ -28,7 +30,8 @@ struct LapCounterParams {
 /// on, when the true line is surely passed.
 ///
 /// The first crossing starts the first lap; the next ones finish one each, at least
-/// `min_lap_length` apart.
+/// `min_lap_length` apart. On a course that does not return to its start line, the line that is
+/// used where no gate is seen is reckoned ahead by its length.
 class LapCounter {
  public:
   /// Throws std::invalid_argument for parameters out of their bounds.

@@ -5,13 +5,12 @@
 #include <stdexcept>
 
 #include "common/clock.hpp"
+#include "daemons/mission_manager/missions.hpp"
 #include "hairpin/global_map_t.hpp"
 #include "hairpin/vehicle_t.hpp"
 
 namespace hairpin {
 namespace {
-
-constexpr size_t kMaxDaemons = 64;  // a hostile sender of names must not grow memory
 
 void Check(const MissionManagerParams& params) {
   const auto require = [](bool holds, const char* what) {
@@ -26,46 +25,13 @@ void Check(const MissionManagerParams& params) {
 
 }  // namespace
 
-std::string MissionProblem(int32_t mission) {
-  const char* name = nullptr;
-  switch (mission) {
-    case vehicle_t::MISSION_AUTOCROSS:
-    case vehicle_t::MISSION_TRACKDRIVE:
-      return {};
-    case vehicle_t::MISSION_ACCELERATION:
-      name = "acceleration";
-      break;
-    case vehicle_t::MISSION_SKIDPAD:
-      name = "skidpad";
-      break;
-    case vehicle_t::MISSION_BRAKE_TEST:
-      name = "brake test";
-      break;
-    case vehicle_t::MISSION_INSPECTION:
-      name = "inspection";
-      break;
-    case vehicle_t::MISSION_MANUAL:
-      return "mission manual is the driver's";
-    default:
-      return "no mission is selected";
-  }
-  return std::string("mission ") + name + " cannot be driven yet";
-}
-
 MissionManager::MissionManager(const MissionManagerParams& params)
-    : params_(params), machine_(params.go_delay), history_(params.history) {
+    : params_(params),
+      machine_(params.go_delay),
+      history_(params.history),
+      startup_(params.startup) {
   Check(params);
-  const LapCounter check_params(params.laps);
-  for (const NeededChannel& channel : params.needed_channels) {
-    monitors_.emplace(channel.name,
-                      RateMonitor(channel.name, channel.rate, channel.deadline, params.rate));
-  }
-}
-
-void MissionManager::TakeBuild(const std::string& daemon, const std::string& build,
-                               int64_t types_hash) {
-  if (same_build_.size() >= kMaxDaemons && !same_build_.contains(daemon)) return;
-  same_build_[daemon] = build == params_.build && types_hash == params_.types_hash;
+  for (const LapCounterParams& laps : {params.laps, params.acceleration}) LapCounter check(laps);
 }
 
 void MissionManager::TakeLocalisation(const LocalisationInput& localisation) {
@@ -104,19 +70,20 @@ bool MissionManager::TakeLocalMap(int64_t utime, const Pose2& T_local_base,
   return true;
 }
 
-std::string MissionManager::SystemProblem(int64_t now) const {
-  for (const auto& [daemon, same] : same_build_) {
-    if (!same) return daemon + " is of another build";
+std::vector<std::string> MissionManager::SystemProblems(int64_t now) const {
+  std::vector<std::string> problems = startup_.Problems(now);
+  if (!supervision_) {
+    problems.emplace_back("the watchdog was never heard");
+  } else if (supervision_->blind) {
+    problems.push_back("no perception pipeline is live: " + supervision_->reason);
+  } else if (supervision_->stop) {
+    problems.push_back("the watchdog asks for a stop: " + supervision_->reason);
   }
-  for (const NeededChannel& channel : params_.needed_channels) {
-    std::string problem = monitors_.at(channel.name).Problem(now);
-    if (!problem.empty()) return problem;
+  if (mission_ == vehicle_t::MISSION_TRACKDRIVE) {
+    std::string problem = LocalisationProblem(now);
+    if (!problem.empty()) problems.push_back(std::move(problem));
   }
-  if (!supervision_) return "the watchdog was never heard";
-  if (supervision_->blind) return "no perception pipeline is live: " + supervision_->reason;
-  if (supervision_->stop) return "the watchdog asks for a stop: " + supervision_->reason;
-  if (mission_ == vehicle_t::MISSION_TRACKDRIVE) return LocalisationProblem(now);
-  return {};
+  return problems;
 }
 
 std::string MissionManager::LocalisationProblem(int64_t now) const {
@@ -134,7 +101,7 @@ std::string MissionManager::LocalisationProblem(int64_t now) const {
   }
 }
 
-bool MissionManager::Stands(const VehicleInput& vehicle) {
+bool MissionManager::Stands(const VehicleReport& vehicle) {
   if (std::abs(vehicle.speed) >= params_.standstill_speed || moved_utime_ == 0) {
     moved_utime_ = vehicle.as.utime;
   }
@@ -142,35 +109,56 @@ bool MissionManager::Stands(const VehicleInput& vehicle) {
 }
 
 int MissionManager::LapsToDrive() const {
-  return mission_ == vehicle_t::MISSION_TRACKDRIVE ? params_.trackdrive_laps
-                                                   : params_.autocross_laps;
+  switch (mission_) {
+    case vehicle_t::MISSION_AUTOCROSS:
+      return params_.autocross_laps;
+    case vehicle_t::MISSION_TRACKDRIVE:
+      return params_.trackdrive_laps;
+    case vehicle_t::MISSION_ACCELERATION:
+    case vehicle_t::MISSION_BRAKE_TEST:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+void MissionManager::BeginDrive() {
+  const Pose2 T_own_start = history_.At(history_.newest_utime()).value_or(Pose2{});
+  std::optional<Pose2> T_map_start;
+  if (mission_ == vehicle_t::MISSION_TRACKDRIVE && T_map_own_)
+    T_map_start = *T_map_own_ * T_own_start;
+  // A brake test is driven on the same straight until the RES ends it, to the finish if it never
+  // does.
+  const bool straight =
+      mission_ == vehicle_t::MISSION_ACCELERATION || mission_ == vehicle_t::MISSION_BRAKE_TEST;
+  drive_.emplace(Drive{T_own_start, T_map_start, history_.distance(),
+                       LapCounter(straight ? params_.acceleration : params_.laps), LapsToDrive()});
 }
 
 bool MissionManager::MissionFinished() const {
-  return drive_ && drive_->laps.laps() >= LapsToDrive();
+  return drive_ && drive_->laps.laps() >= drive_->laps_to_drive;
 }
 
-std::optional<MissionReport> MissionManager::Update(const VehicleInput& vehicle, int64_t now) {
+std::optional<MissionReport> MissionManager::Update(const VehicleReport& vehicle, int64_t now) {
   if (vehicle.as.utime <= last_utime_) return std::nullopt;
   last_utime_ = vehicle.as.utime;
-  mission_ = vehicle.mission;
+  const AsState before = machine_.state();
+  // From Go on the mission is the one that the car began with.
+  if (before != AsState::kDriving && before != AsState::kFinished) mission_ = vehicle.as.mission;
   AsInput input = vehicle.as;
-  input.mission_problem = MissionProblem(vehicle.mission);
-  input.system_problem = SystemProblem(now);
+  input.mission_problem = MissionProblem(vehicle.as.mission);
+  if (before != AsState::kDriving) {
+    std::vector<std::string> problems = SystemProblems(now);
+    if (!problems.empty()) input.system_problem = std::move(problems.front());
+  }
   input.mission_finished = MissionFinished();
   input.standstill = Stands(vehicle);
-  const AsState before = machine_.state();
   const AsState state = machine_.Update(input);
-  if (state == AsState::kDriving && before != AsState::kDriving) {
-    const Pose2 T_own_start = history_.At(history_.newest_utime()).value_or(Pose2{});
-    std::optional<Pose2> T_map_start;
-    if (mission_ == vehicle_t::MISSION_TRACKDRIVE && T_map_own_)
-      T_map_start = *T_map_own_ * T_own_start;
-    drive_.emplace(Drive{T_own_start, T_map_start, history_.distance(), LapCounter(params_.laps)});
-  }
+  if (state == AsState::kReady) drive_.reset();
+  if (state == AsState::kDriving && before != AsState::kDriving) BeginDrive();
   MissionReport report;
   report.state = state;
-  report.laps_to_drive = input.mission_problem.empty() ? LapsToDrive() : 0;
+  report.laps_to_drive = LapsToDrive();
   report.laps = drive_ ? drive_->laps.laps() : 0;
   report.mission_finished = MissionFinished();
   report.distance = drive_ ? history_.distance() - drive_->start_distance : 0.0;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,21 +9,14 @@
 #include "common/pose_history.hpp"
 #include "daemons/mission_manager/as_state_machine.hpp"
 #include "daemons/mission_manager/lap_counter.hpp"
-#include "daemons/mission_manager/rate_monitor.hpp"
+#include "daemons/mission_manager/startup_checks.hpp"
 
 namespace hairpin {
 
-/// A channel that must run before the car may be Ready; from the channel table.
-struct NeededChannel {
-  std::string name;
-  double rate = 0.0;      // [Hz]
-  double deadline = 0.0;  // [s]
-};
-
 struct MissionManagerParams {
-  std::vector<NeededChannel> needed_channels;
-  RateMonitorParams rate;
+  StartupParams startup;
   LapCounterParams laps;
+  LapCounterParams acceleration;       // the same for a straight course
   double go_delay = 0.0;               // [s], >= 0
   int autocross_laps = 0;              // >= 1
   int trackdrive_laps = 0;             // >= 1
@@ -32,15 +24,12 @@ struct MissionManagerParams {
   double standstill_speed = 0.0;       // [m/s], > 0
   double standstill_time = 0.0;        // slower than that for so long is standing [s], >= 0
   double history = 0.0;                // of poses, longer than a local map is late [s], > 0
-  std::string build;                   // of this daemon; one that differs in another refuses Ready
-  int64_t types_hash = 0;
 };
 
 /// Switches, brakes and RES; `as` leaves out what this class adds itself.
-struct VehicleInput {
+struct VehicleReport {
   AsInput as;
-  int32_t mission = 0;  // as in vehicle_t
-  double speed = 0.0;   // [m/s]
+  double speed = 0.0;  // [m/s]
 };
 
 /// Newest word of the watchdog.
@@ -76,14 +65,11 @@ class MissionManager {
   /// Throws std::invalid_argument for parameters out of their bounds.
   explicit MissionManager(const MissionManagerParams& params);
 
-  /// A needed channel was heard when data time was `now`. Throws std::out_of_range for a name not
-  /// among them.
-  void Heard(const std::string& channel, int64_t now) { monitors_.at(channel).Heard(now); }
+  /// What happens on channels, in daemons and in the computer.
+  StartupChecks& startup() { return startup_; }
   void TakeSupervision(const SupervisionInput& supervision) { supervision_ = supervision; }
   /// In a trackdrive the pose in a known map takes the drift out of dead reckoning.
   void TakeLocalisation(const LocalisationInput& localisation);
-  /// Which build another daemon runs.
-  void TakeBuild(const std::string& daemon, const std::string& build, int64_t types_hash);
   /// Returns false, and ignores it, where the time does not increase.
   bool TakeVelocity(int64_t utime, const Twist2& velocity);
   /// Cones in the mapper's local frame, with the pose that it had at `utime`. Returns false, and
@@ -91,7 +77,9 @@ class MissionManager {
   bool TakeLocalMap(int64_t utime, const Pose2& T_local_base, std::vector<GateCone> cones_local);
 
   /// The state when data time is `now`. Returns empty where the vehicle's time does not increase.
-  std::optional<MissionReport> Update(const VehicleInput& vehicle, int64_t now);
+  std::optional<MissionReport> Update(const VehicleReport& vehicle, int64_t now);
+  /// All that keeps the car from Ready when data time is `now`, as far as it is the software.
+  std::vector<std::string> SystemProblems(int64_t now) const;
 
  private:
   /// The drive that began with Driving.
@@ -100,31 +88,28 @@ class MissionManager {
     std::optional<Pose2> T_map_start;  // where the car is localised
     double start_distance;
     LapCounter laps;
+    int laps_to_drive;
   };
 
   Pose2 StartFromOwn() const;
-  std::string SystemProblem(int64_t now) const;
   std::string LocalisationProblem(int64_t now) const;
-  bool Stands(const VehicleInput& vehicle);
+  bool Stands(const VehicleReport& vehicle);
   int LapsToDrive() const;
+  void BeginDrive();
   bool MissionFinished() const;
   std::string Reason() const;
 
   MissionManagerParams params_;
   AsStateMachine machine_;
   PoseHistory history_;
-  std::map<std::string, RateMonitor> monitors_;
+  StartupChecks startup_;
   std::optional<SupervisionInput> supervision_;
   std::optional<LocalisationInput> localisation_;
-  std::optional<Pose2> T_map_own_;          // by the newest pose in the known map
-  int32_t mission_ = 0;                     // as in vehicle_t
-  std::map<std::string, bool> same_build_;  // by daemon
+  std::optional<Pose2> T_map_own_;  // by the newest pose in the known map
+  int32_t mission_ = 0;             // as in vehicle_t
   std::optional<Drive> drive_;
   int64_t last_utime_ = 0;
   int64_t moved_utime_ = 0;  // when the car was last not slow
 };
-
-/// Why a mission (numbered as in vehicle_t) cannot be driven by this software; empty: it can.
-std::string MissionProblem(int32_t mission);
 
 }  // namespace hairpin

@@ -5,6 +5,11 @@
 #include "common/clock.hpp"
 
 namespace hairpin {
+namespace {
+
+constexpr double kFlood = 4.0;  // times the nominal rate; more tells nothing more
+
+}  // namespace
 
 RateMonitor::RateMonitor(std::string channel, double rate, double deadline,
                          const RateMonitorParams& params)
@@ -25,6 +30,8 @@ void RateMonitor::Heard(int64_t now) {
     since_ = now;
   }
   arrivals_.push_back(now);
+  if (static_cast<double>(arrivals_.size()) > kFlood * rate_ * params_.window + kFlood)
+    arrivals_.pop_front();
   while (SecondsBetween(arrivals_.front(), now) > params_.window) arrivals_.pop_front();
 }
 

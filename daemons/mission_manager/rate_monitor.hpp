@@ -23,6 +23,7 @@ class RateMonitor {
   /// Empty if messages came at `min_share` of the rate over the whole window, and the last one
   /// within the deadline; else what is wrong, for people.
   std::string Problem(int64_t now) const;
+  bool heard() const { return !arrivals_.empty(); }
 
  private:
   std::string channel_;
@@ -30,7 +31,7 @@ class RateMonitor {
   double deadline_;
   RateMonitorParams params_;
   int64_t since_ = 0;             // of the present run without a gap
-  std::deque<int64_t> arrivals_;  // within the window
+  std::deque<int64_t> arrivals_;  // within the window; not all of a flood
 };
 
 }  // namespace hairpin

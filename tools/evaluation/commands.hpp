@@ -10,6 +10,7 @@ namespace hairpin {
 void AddLidarCommand(CLI::App& app);
 void AddMapCommand(CLI::App& app);
 void AddPlannerCommand(CLI::App& app);
+void AddRunCommand(CLI::App& app);
 void AddSlamCommand(CLI::App& app);
 void AddVelocityCommand(CLI::App& app);
 

@@ -1,7 +1,6 @@
-#include "daemons/lidar_cone_detector/conversion.hpp"
 #include "tools/evaluation/lidar_sources.hpp"
 #include "tools/evaluation/recorded_scans.hpp"
-#include "tools/evaluation/recorded_sensor.hpp"
+#include "tools/evaluation/recording_detector.hpp"
 #include "tools/evaluation/stopwatch.hpp"
 
 namespace hairpin {
@@ -23,27 +22,17 @@ std::vector<TrueCone> InBase(const std::vector<SurveyedCone>& map, const Pose2& 
 void DetectInRecording(const std::string& run, const std::string& map, int rings,
                        const LidarConeDetectorNodeParams& params, const ScanListener& listener) {
   const std::vector<SurveyedCone> surveyed = LoadSurveyedMap(map);
-  const RecordedSensor sensor;
-  const int keep_every = RecordedSensor::kRings / rings;
-  const std::vector<SensorGeometry> sensors{sensor.Geometry(keep_every)};
-  LidarConeDetector detector(params.detector);
-  const ColourClassifier classifier(params.colour);
+  RecordingDetector recording(run, rings, params);
   Stopwatch stopwatch;
-  detector.OnStageDone([&stopwatch](DetectorStage stage) { stopwatch.Record(stage); });
-  RecordedScanReader reader(run);
-  PointCloud cloud;
-  for (int64_t number = 0; const std::optional<RecordedScan> scan = reader.Next(); ++number) {
-    sensor.ToCloud(*scan, keep_every, cloud);
-    const std::vector<DetectedCone>& cones = detector.Detect(cloud, sensors);
+  recording.detector().OnStageDone([&stopwatch](DetectorStage stage) { stopwatch.Record(stage); });
+  for (int64_t number = 0; const std::optional<DetectedScan> found = recording.Next(); ++number) {
     std::vector<LidarDetection> detections;
-    const std::vector<ColourDistribution> colours =
-        classifier.Classify(ReturnsOf(cloud, detector.heights(), cones));
-    for (size_t i = 0; i < cones.size(); ++i)
-      detections.push_back({cones[i].position.cast<double>(), colours[i]});
-    std::vector<TrueCone> truth = InBase(surveyed, scan->T_map_base);
-    CountReturns(cloud, truth);
-    listener({number, cloud, detector, truth, detections,
-              sensors[0].T_base_sensor.translation().head<2>().cast<double>(), stopwatch.Laps()});
+    for (size_t i = 0; i < found->cones.size(); ++i)
+      detections.push_back({found->cones[i].position.cast<double>(), found->colours[i]});
+    std::vector<TrueCone> truth = InBase(surveyed, found->scan.T_map_base);
+    CountReturns(recording.cloud(), truth);
+    listener({number, recording.cloud(), recording.detector(), truth, detections,
+              recording.sensor_position(), stopwatch.Laps()});
   }
 }
 

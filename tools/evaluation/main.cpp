@@ -18,6 +18,7 @@ int Main(int argc, char** argv) {
   AddLidarCommand(app);
   AddMapCommand(app);
   AddPlannerCommand(app);
+  AddRunCommand(app);
   AddSlamCommand(app);
   AddVelocityCommand(app);
   try {

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <map>
 #include <memory>
 
 #include "daemons/global_mapper/global_mapper_node.hpp"
@@ -8,10 +10,15 @@
 namespace hairpin {
 namespace {
 
+const std::map<std::string, NoiseReading> kReadings{
+    {"bearing_range", NoiseReading::kBearingRange},
+    {"covariance", NoiseReading::kCovariance},
+    {"information", NoiseReading::kInformation}};
+
 struct SlamOptions {
   std::string file;
   std::string config_dir = "config";
-  std::string noise = "information";
+  NoiseReading noise = NoiseReading::kBearingRange;
   int full_solve_steps = 200;
   bool json = false;
 };
@@ -20,12 +27,12 @@ void Run(const SlamOptions& options) {
   const Config config = Config::Load(options.config_dir, "global_mapper");
   GraphParams params = LoadGlobalMapperConfig(config).params.map.graph;
   params.window.loss_scale = params.full.loss_scale = 0.0;  // the associations are true
-  const auto reading =
-      options.noise == "covariance" ? NoiseReading::kCovariance : NoiseReading::kInformation;
-  const SlamDataset dataset = LoadSlamDataset(options.file, reading);
+  const SlamDataset dataset = LoadSlamDataset(options.file, options.noise);
   nlohmann::json figures = ToJson(EvaluateSlam(dataset, params, options.full_solve_steps));
   figures["landmarks"] = dataset.num_landmarks;
-  figures["noise_read_as"] = options.noise;
+  figures["noise_read_as"] = std::find_if(kReadings.begin(), kReadings.end(), [&](const auto& r) {
+                               return r.second == options.noise;
+                             })->first;
   PrintFigures(figures, options.json);
 }
 
@@ -37,9 +44,10 @@ void AddSlamCommand(CLI::App& app) {
   const auto options = std::make_shared<SlamOptions>();
   slam->add_option("--victoria", options->file, "the dataset, in the format of victoria_park.txt")
       ->required();
-  slam->add_option("--noise", options->noise, "what the file's noise figures are")
-      ->check(CLI::IsMember({"information", "covariance"}))
-      ->capture_default_str();
+  slam->add_option("--noise", options->noise,
+                   "what the file's noise figures are: bearing_range (as GTSAM reads them; the "
+                   "default), covariance or information")
+      ->transform(CLI::Transformer(kReadings));
   slam->add_option("--full-solve-steps", options->full_solve_steps,
                    "steps between two solves of everything where no loop closes")
       ->check(CLI::Range(1, 100000))

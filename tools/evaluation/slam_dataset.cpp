@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -10,6 +11,8 @@
 
 namespace hairpin {
 namespace {
+
+constexpr double kNominalRange = 10.0;  // m, at which x, y noise is bearing and range noise
 
 class Parser {
  public:
@@ -48,7 +51,7 @@ class Parser {
   }
 
   template <int size>
-  Eigen::Matrix<double, size, size> SqrtInformationFrom(std::istream& words) const {
+  Eigen::Matrix<double, size, size> CovarianceFrom(std::istream& words) const {
     Eigen::Matrix<double, size, size> noise;
     for (int row = 0; row < size; ++row) {
       for (int column = row; column < size; ++column)
@@ -57,7 +60,13 @@ class Parser {
     if (Eigen::LLT<Eigen::Matrix<double, size, size>>(noise).info() != Eigen::Success)
       Refuse("its noise is not positive definite");
     if (reading_ == NoiseReading::kInformation) noise = noise.inverse().eval();
-    return SqrtInformation(noise);
+    return noise;
+  }
+
+  Eigen::Vector2d PolarSigmaFrom(const Eigen::Matrix2d& at_10m) const {
+    if (std::abs(at_10m(0, 0) - at_10m(1, 1)) > 1e-4 || at_10m(0, 1) != 0.0)
+      Refuse("noise of bearing and range must be v 0 v");
+    return {std::sqrt(at_10m(0, 0) / kNominalRange), std::sqrt(at_10m(0, 0))};
   }
 
   void TakeOdometry(std::istream& words) {
@@ -70,7 +79,7 @@ class Parser {
     const double x = Number(words);
     const double y = Number(words);
     step.odometry.T_from_to = {x, y, Number(words)};
-    step.odometry.sqrt_information = SqrtInformationFrom<3>(words);
+    step.odometry.sqrt_information = SqrtInformation(CovarianceFrom<3>(words));
     dataset_.steps.push_back(step);
   }
 
@@ -79,10 +88,20 @@ class Parser {
     int id = 0;
     if (!(words >> pose >> id)) Refuse("two ids are missing");
     if (pose != newest_) Refuse("a landmark is not seen from the newest pose");
-    SlamDataset::Sighting sighting{landmarks_.try_emplace(id, landmarks_.size()).first->second, {}};
+    SlamDataset::Sighting sighting{
+        landmarks_.try_emplace(id, landmarks_.size()).first->second, {}, {}};
     const double x = Number(words);
     sighting.measurement.position = {x, Number(words)};
-    sighting.measurement.sqrt_information = SqrtInformationFrom<2>(words);
+    Eigen::Matrix2d covariance = CovarianceFrom<2>(words);
+    if (reading_ == NoiseReading::kBearingRange) {
+      const Eigen::Vector2d& seen = sighting.measurement.position;
+      sighting.polar_sigma = PolarSigmaFrom(covariance);
+      const double across = sighting.polar_sigma->x() * seen.norm();
+      const double along = sighting.polar_sigma->y();
+      covariance = RotateCovariance(Eigen::Vector2d(along * along, across * across).asDiagonal(),
+                                    std::atan2(seen.y(), seen.x()));
+    }
+    sighting.measurement.sqrt_information = SqrtInformation(covariance);
     dataset_.steps.back().sightings.push_back(sighting);
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ struct SlamDataset {
   struct Sighting {
     size_t landmark;  // numbered from 0 in the order of first sightings
     LandmarkMeasurement measurement;
+    // Of (bearing [rad], range [m]) where these are what was measured; their covariance in x, y is
+    // `measurement`'s then.
+    std::optional<Eigen::Vector2d> polar_sigma;
   };
   struct Step {
     OdometryMeasurement odometry;  // from the step before; the first step's is not used
@@ -21,9 +25,13 @@ struct SlamDataset {
   size_t num_landmarks = 0;
 };
 
-/// How the file's numbers after a measurement are read: as the upper triangle of its information
-/// matrix, row by row, or of its covariance.
-enum class NoiseReading { kInformation, kCovariance };
+/// How the file's numbers after a measurement are read.
+///
+/// kBearingRange: odometry's as the upper triangle of its covariance, row by row; a landmark's equal
+/// variances v of x and y as those at 10 m, which make sigma sqrt(v / 10) of its bearing [rad] and
+/// sqrt(v) of its range [m], both measured. So does GTSAM's load2D [Dellaert 2012], by which the
+/// known figures of Victoria Park were made. kCovariance and kInformation: of x, y as they stand.
+enum class NoiseReading { kBearingRange, kCovariance, kInformation };
 
 /// Reads lines `ODOMETRY i j dx dy dyaw` and `LANDMARK i j x y` with 6 and 3 noise figures; ids are
 /// shared by poses and landmarks, each odometry goes on from the newest pose, and landmarks are

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int64_t kTerminalPeriod = 250'000;  // us of wall time
 constexpr int64_t kLogPeriod = 5'000'000;
+constexpr size_t kMaxReason = 90;  // what fits beside it on a line
 
 const char* NameOfState(int state) {
   switch (state) {
@@ -24,6 +25,8 @@ const char* NameOfState(int state) {
       return "AS Emergency";
     case as_state_t::STATE_FINISHED:
       return "AS Finished";
+    case as_state_t::STATE_MANUAL:
+      return "Manual";
     default:
       return "starting";
   }
@@ -58,6 +61,14 @@ void Progress::Show(int64_t utime) {
 }
 
 std::string Progress::Line(double real_time_factor) const {
+  const bool says_why =
+      as_state_.state == as_state_t::STATE_OFF || as_state_.state == as_state_t::STATE_EMERGENCY;
+  if (says_why) {
+    char start[40];
+    std::snprintf(start, sizeof start, "%6.1f s  %-12s ", SecondsBetween(start_utime_, now_utime_),
+                  NameOfState(as_state_.state));
+    return start + as_state_.reason.substr(0, kMaxReason);
+  }
   char line[160];
   std::snprintf(line, sizeof line,
                 "%6.1f s  %-12s lap %d  %6.1f m  %4.1f m/s  %-16s %3d cones  x%.1f",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <iomanip>
 #include <memory>
@@ -26,6 +27,7 @@ constexpr const char* kCanGateway = "can_gateway";
 // In the race's own network namespace.
 constexpr const char* kCarAddress = "127.0.0.1:20000";
 constexpr const char* kGatewayAddress = "127.0.0.1:20001";
+constexpr int kBufferForCones = 200;     // kB: what every kernel gives
 constexpr double kStartPatience = 15.0;  // s of wall time until every daemon must have been heard
 
 /// Waits until simulated time may go on: never faster than `speed` times real time.
@@ -125,9 +127,23 @@ std::unique_ptr<CanPort> OpenCarPort(const RaceOptions& options, MemoryCanBus& m
                                           ParseUdpAddress(kGatewayAddress), clock);
 }
 
+// What is to be checked of this computer before the car may be Ready: room where this run's log
+// goes, and buffers for messages as large as there are.
+std::vector<std::string> OverridesForHost(const RaceOptions& options) {
+  const std::string folder = std::filesystem::path(options.log_file).parent_path().string();
+  std::vector<std::string> overrides{"mission_manager.log_folder=" +
+                                     (folder.empty() ? "." : folder)};
+  if (options.stack.level == SensorLevel::kCones)
+    overrides.push_back("mission_manager.min_receive_buffer_kb=" + std::to_string(kBufferForCones));
+  return overrides;
+}
+
 StackOptions StackWith(const RaceOptions& options, const SimulatorParams& simulator,
                        MemoryCanBus& memory) {
   StackOptions stack = options.stack;
+  // First, so that others may say otherwise.
+  const std::vector<std::string> host = OverridesForHost(options);
+  stack.overrides.insert(stack.overrides.begin(), host.begin(), host.end());
   const auto set = [&stack](const std::string& daemon, const std::string& key, const auto& value) {
     std::ostringstream text;
     text << daemon << '.' << key << '=' << std::setprecision(12) << value;
@@ -245,6 +261,7 @@ RaceOutcome RunRace(const RaceOptions& asked, const volatile int& stop) {
   const int64_t start_wall = clock.NowMicros();
   const int64_t start_utime = simulator.utime();
   Pacer pacer;
+  bool was_ready = false;
   while (!simulator.done() && stop == 0) {
     faults.Apply(simulator.utime(), simulator, lidars.get(), *stack);
     const int64_t before = simulator.utime();
@@ -258,9 +275,11 @@ RaceOutcome RunRace(const RaceOptions& asked, const volatile int& stop) {
     }
     stack->Tend(simulator.utime());
     progress.Show(simulator.utime());
+    // Nobody waits for the checks before Ready: they take as long as they take.
+    was_ready = was_ready || simulator.actuators().state() >= as_state_t::STATE_READY;
+    double speed = was_ready ? options.speed : 0.0;
     const bool waiting = lockstep && lockstep->AnyoneSilent();
-    const double speed =
-        waiting && (options.speed <= 0.0 || options.speed > 1.0) ? 1.0 : options.speed;
+    if (waiting && (speed <= 0.0 || speed > 1.0)) speed = 1.0;
     pacer.Wait(SecondsBetween(before, simulator.utime()), speed, await_can);
   }
   transport.Drain();

@@ -1,6 +1,7 @@
 // hairpin-race: drives the simulated car round a track with the whole stack, and reports.
 // `tools/drive` builds and calls it.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "daemons/mission_manager/missions.hpp"
 #include "tools/race/race.hpp"
 #include "tools/race/summary.hpp"
 #include "tools/report/report_html.hpp"
@@ -18,7 +20,7 @@ namespace {
 volatile std::sig_atomic_t stop_requested = 0;
 
 struct Arguments {
-  std::string track = "default";
+  std::string track;  // empty: the mission's own
   uint64_t seed = 1;
   std::string mission = "autocross";
   std::string map;  // file, for the trackdrive
@@ -39,14 +41,59 @@ struct Arguments {
   bool json = false;
 };
 
+struct Mission {
+  const char* name;
+  int32_t number;  // as in VEHICLE
+};
+
+constexpr Mission kMissions[] = {{"autocross", vehicle_t::MISSION_AUTOCROSS},
+                                 {"trackdrive", vehicle_t::MISSION_TRACKDRIVE},
+                                 {"acceleration", vehicle_t::MISSION_ACCELERATION},
+                                 {"skidpad", vehicle_t::MISSION_SKIDPAD},
+                                 {"brake_test", vehicle_t::MISSION_BRAKE_TEST},
+                                 {"inspection", vehicle_t::MISSION_INSPECTION},
+                                 {"manual", vehicle_t::MISSION_MANUAL}};
+
+std::vector<std::string> MissionNames() {
+  std::vector<std::string> names;
+  for (const Mission& mission : kMissions) names.emplace_back(mission.name);
+  return names;
+}
+
+int32_t NumberOf(const std::string& mission) {
+  const auto* found = std::find_if(std::begin(kMissions), std::end(kMissions),
+                                   [&](const Mission& known) { return known.name == mission; });
+  return found->number;
+}
+
+bool IsOnAStraight(const std::string& mission) {
+  return mission == "acceleration" || mission == "brake_test";
+}
+
+/// A mission that nobody can drive here.
+class MissionError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+void RequireDrivable(const std::string& mission, int laps) {
+  const int32_t number = NumberOf(mission);
+  if (number == vehicle_t::MISSION_MANUAL) throw MissionError("mission manual is the driver's");
+  const std::string problem = MissionProblem(number);
+  if (!problem.empty()) throw MissionError(problem);
+  if (IsOnAStraight(mission) && laps > 1) throw MissionError("--laps: a straight has one run");
+}
+
 void Define(CLI::App& app, Arguments& arguments) {
   app.add_option("--track", arguments.track,
-                 "track file (own YAML, PacSim, FSSIM, EUFS CSV), or a name in config/tracks")
-      ->capture_default_str();
+                 "track file (own YAML, PacSim, FSSIM, EUFS CSV), or a name in config/tracks "
+                 "(default: `default`; of the missions on a straight, `acceleration`)");
   app.add_option("--seed", arguments.seed, "seed of all noise")->capture_default_str();
   app.add_option("--mission", arguments.mission,
-                 "autocross: drive on sight, and map; trackdrive: race on a map")
-      ->check(CLI::IsMember({"autocross", "trackdrive"}))
+                 "autocross: drive on sight, and map; trackdrive: race on a map; acceleration: a "
+                 "straight of 75 m; brake_test: the same until RES Stop is pressed at 40 km/h. One "
+                 "that cannot be driven yet is refused by name")
+      ->check(CLI::IsMember(MissionNames()))
       ->capture_default_str();
   app.add_option("--sensors", arguments.sensors,
                  "what the simulator feeds: `cones` and messages, as pipelines and drivers report "
@@ -59,7 +106,8 @@ void Define(CLI::App& app, Arguments& arguments) {
          "--map", arguments.map,
          "map of the track, from an autocross (default: a lap of autocross is driven first)")
       ->check(CLI::ExistingFile);
-  app.add_option("--laps", arguments.laps, "laps to drive (default: autocross 1, trackdrive 10)")
+  app.add_option("--laps", arguments.laps,
+                 "laps to drive (default: autocross 1, trackdrive 10; a straight has one run)")
       ->check(CLI::Range(1, 50));
   app.add_option(
          "--fault", arguments.faults,
@@ -69,7 +117,7 @@ void Define(CLI::App& app, Arguments& arguments) {
   app.add_option("--speed-cap", arguments.speed_cap, "drive no faster than this [m/s]")
       ->check(CLI::Range(1.0, 40.0));
   app.add_option("--speed", arguments.speed,
-                 "at most this many times real time, 0: as fast as it goes "
+                 "at most this many times real time once the car is Ready, 0: as fast as it goes "
                  "(default 1; with --in-process 0)")
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--in-process", arguments.in_process,
@@ -107,7 +155,7 @@ std::string TrackFile(const Arguments& arguments) {
 
 /// One start of the car.
 struct Leg {
-  bool trackdrive = false;
+  std::string mission;
   int laps = 1;
   uint64_t seed = 1;
   std::string map;  // to race on; empty: none
@@ -116,12 +164,12 @@ struct Leg {
 };
 
 std::vector<Leg> LegsOf(const Arguments& arguments) {
-  Leg leg{false, arguments.laps, arguments.seed, "", arguments.out, arguments.faults};
-  leg.trackdrive = arguments.mission == "trackdrive";
-  if (leg.laps == 0) leg.laps = leg.trackdrive ? 10 : 1;
-  leg.map = leg.trackdrive ? arguments.map : "";
-  if (!leg.trackdrive || !leg.map.empty()) return {leg};
-  const Leg first{false, 1, arguments.seed, "", arguments.out + "/autocross", {}};
+  Leg leg{arguments.mission, arguments.laps, arguments.seed, "", arguments.out, arguments.faults};
+  const bool trackdrive = leg.mission == "trackdrive";
+  if (leg.laps == 0) leg.laps = trackdrive ? 10 : 1;
+  leg.map = trackdrive ? arguments.map : "";
+  if (!trackdrive || !leg.map.empty()) return {leg};
+  const Leg first{"autocross", 1, arguments.seed, "", arguments.out + "/autocross", {}};
   leg.seed = arguments.seed + 1;  // another start: the sensors' errors are drawn anew
   leg.map = first.out + "/map.yaml";
   leg.out = arguments.out + "/trackdrive";
@@ -129,14 +177,16 @@ std::vector<Leg> LegsOf(const Arguments& arguments) {
 }
 
 std::vector<std::string> LegOverrides(const Leg& leg, double speed_cap) {
-  const std::string mission = leg.trackdrive ? "trackdrive" : "autocross";
-  int32_t number = vehicle_t::MISSION_AUTOCROSS;
-  if (leg.trackdrive) number = vehicle_t::MISSION_TRACKDRIVE;
   std::vector<std::string> overrides{
       "simulator.referee.laps=" + std::to_string(leg.laps),
-      "simulator.race_control.mission=" + std::to_string(number),
-      "mission_manager." + mission + "_laps=" + std::to_string(leg.laps),
+      "simulator.race_control.mission=" + std::to_string(NumberOf(leg.mission)),
       "global_mapper.files.known_map=" + (leg.map.empty() ? "none" : leg.map)};
+  if (leg.mission == "brake_test") {  // by the rules: from 40 km/h, within 10 m
+    overrides.emplace_back("simulator.race_control.res_stop_speed_mps=11.2");
+    overrides.emplace_back("simulator.referee.braking_distance_m=10");
+  }
+  if (leg.mission == "autocross" || leg.mission == "trackdrive")
+    overrides.push_back("mission_manager." + leg.mission + "_laps=" + std::to_string(leg.laps));
   if (speed_cap > 0.0) {
     const std::string cap = std::to_string(speed_cap);
     overrides.push_back("path_tracker.max_speed_mps=" + cap);
@@ -190,7 +240,7 @@ std::optional<LegResult> RunLeg(const Arguments& arguments, const Leg& leg) {
   context.faults = leg.faults;
   result.report = EvaluateRun(result.log, context);
   result.report["answers_missed"] = result.outcome.answers_missed;
-  result.report["mission"] = leg.trackdrive ? "trackdrive" : "autocross";
+  result.report["mission"] = leg.mission;
   WriteReport(leg.out, result.report, result.log);
   return result;
 }
@@ -231,9 +281,15 @@ int Main(int argc, char** argv) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   try {
+    RequireDrivable(arguments.mission, arguments.laps);
+    if (arguments.track.empty())
+      arguments.track = IsOnAStraight(arguments.mission) ? "acceleration" : "default";
     if (arguments.out.empty())
       arguments.out = DefaultOutDir(arguments.logs_dir, arguments.track, arguments.seed);
     return Drive(arguments);
+  } catch (const MissionError& error) {
+    std::cerr << "drive: " << error.what() << '\n';
+    return kExitUsage;
   } catch (const FaultError& error) {
     std::cerr << "drive: " << error.what() << '\n';
     return kExitUsage;

@@ -5,6 +5,7 @@
 #include "daemons/lidar_cone_detector/lidar_cone_detector_node.hpp"
 #include "daemons/lidar_driver/lidar_driver_node.hpp"
 #include "daemons/local_mapper/local_mapper_node.hpp"
+#include "daemons/mission_manager/host.hpp"
 #include "daemons/mission_manager/mission_manager_node.hpp"
 #include "daemons/path_tracker/path_tracker_node.hpp"
 #include "daemons/velocity_estimator/velocity_estimator_node.hpp"
@@ -83,7 +84,8 @@ std::map<std::string, NodeFactory> Factories(const Clock& clock, Drivers& driver
          return PathTrackerNode(LoadPathTrackerParams(config), bus);
        })},
       {"mission_manager", Host([](Bus& bus, const Config& config) {
-         return MissionManagerNode(LoadMissionManagerParams(config), bus);
+         const MissionManagerParams params = LoadMissionManagerParams(config);
+         return MissionManagerNode(params, bus, ThisHost(params.startup.log_folder, bus.url()));
        })},
       {"watchdog", Host([&clock](Bus& bus, const Config& config) {
          return WatchdogNode(LoadWatchdogParams(config), bus, clock);
@@ -143,7 +145,7 @@ void InProcessStack::SetDaemon(const std::string& name, bool on) {
         Config::Load(options_.config_dir, program, OverridesOf(program, options_.overrides));
     Member member;
     member.bus = std::make_unique<Bus>(transport_, name, ++starts_);
-    member.heartbeat = std::make_unique<Heartbeat>(*member.bus);
+    member.heartbeat = std::make_unique<Heartbeat>(*member.bus, config.SiblingHash("car"));
     member.node = factories_.at(name)(*member.bus, config);
     members_.emplace(name, std::move(member));
   } catch (const ConfigError& error) {

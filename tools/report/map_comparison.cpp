@@ -51,7 +51,7 @@ Points TruePositions(const RunLog& log) {
 }
 
 struct LocalMapCone {
-  MappedCone cone;  // local
+  EstimatedCone cone;  // local
   bool certain = false;
 };
 
@@ -86,17 +86,17 @@ std::map<int64_t, Epoch> CollectEpochs(const RunLog& log) {
   return epochs;
 }
 
-Points PositionsOf(const std::vector<MappedCone>& cones) {
+Points PositionsOf(const std::vector<EstimatedCone>& cones) {
   Points points;
-  for (const MappedCone& cone : cones) points.push_back(cone.position);
+  for (const EstimatedCone& cone : cones) points.push_back(cone.position);
   return points;
 }
 
 /// Returns T_truth_map.
-Pose2 Add(const std::vector<MappedCone>& cones, const Points& truth, const Pose2& guess,
+Pose2 Add(const std::vector<EstimatedCone>& cones, const Points& truth, const Pose2& guess,
           MapComparison& comparison) {
   const Pose2 T_truth_map = AlignByIcp(PositionsOf(cones), truth, guess);
-  for (const MappedCone& cone : cones) {
+  for (const EstimatedCone& cone : cones) {
     const Eigen::Vector2d position = T_truth_map * cone.position;
     const Neighbour nearest = Nearest(truth, position);
     ComparedCone compared{position, cone.colour, std::nullopt, nearest.distance};
@@ -180,7 +180,7 @@ Pose2 AlignByIcp(const Points& from, const Points& to, const Pose2& guess) {
   return T_to_from;
 }
 
-MapComparison CompareCones(const std::vector<MappedCone>& cones, const Points& truth,
+MapComparison CompareCones(const std::vector<EstimatedCone>& cones, const Points& truth,
                            const Pose2& guess) {
   MapComparison comparison;
   Add(cones, truth, guess, comparison);
@@ -195,7 +195,7 @@ std::optional<MapComparison> CompareLocalMaps(const RunLog& log) {
   if (epochs.empty()) return std::nullopt;
   MapComparison comparison;
   for (const auto& [id, epoch] : epochs) {
-    std::vector<MappedCone> certain;
+    std::vector<EstimatedCone> certain;
     for (const auto& [cone_id, cone] : epoch.cones) {
       if (cone.certain) certain.push_back(cone.cone);
     }
@@ -215,7 +215,7 @@ std::optional<MapComparison> CompareGlobalMap(const RunLog& log) {
     if (guess && !T_truth_map) T_truth_map = guess;
   }
   if (!T_truth_map) return std::nullopt;
-  std::vector<MappedCone> cones;
+  std::vector<EstimatedCone> cones;
   for (const global_cone_t& cone : log.global_maps.back().cones)
     cones.push_back({{cone.x_m, cone.y_m}, ColourOf(cone)});
   return CompareCones(cones, TruePositions(log), *T_truth_map);

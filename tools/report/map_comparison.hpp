@@ -57,14 +57,14 @@ struct MapComparison {
 };
 
 /// A cone of some map, in that map's frame.
-struct MappedCone {
+struct EstimatedCone {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  // m
   ConeColour colour = ConeColour::kUnknown;
 };
 
 /// Cones of one map against true ones after one rigid alignment, found from `guess` (T_truth_map)
 /// on.
-MapComparison CompareCones(const std::vector<MappedCone>& cones,
+MapComparison CompareCones(const std::vector<EstimatedCone>& cones,
                            const std::vector<Eigen::Vector2d>& truth, const Pose2& guess);
 
 /// The run's last global map. Empty where no track, true pose or global map is known.

@@ -16,8 +16,6 @@ constexpr double kTorqueConstant = 4.0;    // N m per A, at the wheel
 constexpr double kMinSlipSpeed = 0.5;      // m/s, below which the optical sensor gives no angle
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr uint8_t kActuatorActive = 2;
-constexpr uint8_t kEbsArmed = 2;
-constexpr uint8_t kEbsActivated = 3;
 
 template <class Integer>
 Integer Percent(double share) {
@@ -105,7 +103,7 @@ void CanCar::Add(const vehicle_t& vehicle, double brake) {
                     .master_switch_on = vehicle.master_switch_on != 0,
                     .tractive_system_on = vehicle.tractive_system_on != 0,
                     .shutdown_circuit_closed = vehicle.shutdown_circuit_closed != 0,
-                    .ebs_state = vehicle.ebs_activated != 0 ? kEbsActivated : kEbsArmed});
+                    .ebs_state = static_cast<uint8_t>(vehicle.ebs_state)});
 }
 
 void CanCar::Flush() {

@@ -13,6 +13,11 @@ RaceControl::RaceControl(const RaceControlParams& params, const Car& car)
                 vehicle_t::MISSION_AUTOCROSS);
   RequireWithin("go_after_ready", params.go_after_ready_s, 5.0, 60.0);
   RequireWithin("brakes_engaged_pressure", params.brakes_engaged_pressure, 0.0, 1.0);
+  RequireNotNegative("res_stop_speed", params.res_stop_speed_mps);
+}
+
+bool RaceControl::PressesStop(const VehicleState& state) const {
+  return params_.res_stop_speed_mps > 0.0 && state.velocity.vx >= params_.res_stop_speed_mps;
 }
 
 vehicle_t RaceControl::Vehicle(int64_t utime, const Actuators& actuators,
@@ -28,7 +33,8 @@ vehicle_t RaceControl::Vehicle(int64_t utime, const Actuators& actuators,
   message.shutdown_circuit_closed = actuators.shutdown_circuit_closed() ? 1 : 0;
   message.brakes_engaged = state.brake >= params_.brakes_engaged_pressure ? 1 : 0;
   message.brakes_ok = 1;
-  message.ebs_activated = actuators.ebs_activated() ? 1 : 0;
+  message.ebs_state = vehicle_t::EBS_ARMED;
+  if (actuators.ebs_activated()) message.ebs_state = vehicle_t::EBS_ACTIVATED;
   message.res_go = go_ && !actuators.res_stop() ? 1 : 0;
   message.res_stop = actuators.res_stop() ? 1 : 0;
   for (const double speed : state.wheel_speed)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "common/clock.hpp"
@@ -30,6 +31,7 @@ Referee::Referee(const RefereeParams& params, const Car& car, const Track& track
   RequirePositive("finish_limit", params.finish_limit_s);
   RequirePositive("no_movement_limit", params.no_movement_limit_s);
   RequirePositive("standstill", params.standstill_mps);
+  RequireNotNegative("braking_distance", params.braking_distance_m);
   for (const auto* cones : {&track.left, &track.right, &track.others}) {
     standing_cones_.insert(standing_cones_.end(), cones->begin(), cones->end());
   }
@@ -135,16 +137,25 @@ void Referee::CheckEnd(const RefereeInput& input, const VehicleState& state, dou
 void Referee::CheckDrive(const RefereeInput& input, const VehicleState& state, double time) {
   const bool moves = std::abs(state.velocity.vx) > params_.standstill_mps;
   if (moves || !last_movement_) last_movement_ = time;
-  if (!input.emergency.empty()) {
-    if (!moves) End(false, "emergency brake: " + input.emergency);
-    return;
-  }
+  if (!input.emergency.empty()) return CheckEmergency(input, state, moves);
   if (input.finished) return End(false, "AS Finished before the finish");
   if (time - *last_movement_ > params_.no_movement_limit_s) {
     return End(false, "no movement for " + Seconds(params_.no_movement_limit_s));
   }
   const double limit = params_.laps * params_.time_limit_per_lap_s;
   if (time - *driving_since_ > limit) End(false, "time limit of " + Seconds(limit) + " exceeded");
+}
+
+void Referee::CheckEmergency(const RefereeInput& input, const VehicleState& state, bool moves) {
+  if (!emergency_distance_) emergency_distance_ = state.distance;
+  if (moves) return;
+  const bool brake_test = params_.braking_distance_m > 0.0 && input.res_stop;
+  if (!brake_test) return End(false, "emergency brake: " + input.emergency);
+  const double distance = state.distance - *emergency_distance_;
+  std::ostringstream reason;
+  reason << "brake test: stands " << std::fixed << std::setprecision(1) << distance
+         << " m after the RES";
+  End(distance <= params_.braking_distance_m, reason.str());
 }
 
 void Referee::CheckStop(const RefereeInput& input, const VehicleState& state, double time) {

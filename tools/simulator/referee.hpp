@@ -21,12 +21,14 @@ struct RefereeParams {
   double finish_limit_s = 0.0;        // after the finish, in which AS Finished has to come
   double no_movement_limit_s = 0.0;   // standing while driving
   double standstill_mps = 0.0;
+  double braking_distance_m = 0.0;  // of a brake test; 0: it is none
 };
 
 /// How a race went.
 struct RaceResult {
-  bool finished = false;  // all laps, stopped in time and place, AS Finished
-  std::string reason;     // in words, why it ended as it did; empty while it goes on
+  bool finished =
+      false;           // all laps, stopped in time and place, AS Finished; or a brake test passed
+  std::string reason;  // in words, why it ended as it did; empty while it goes on
   std::vector<double> lap_times_s;
   int cones_hit = 0;   // each cone once
   int off_course = 0;  // times that all four wheels were outside
@@ -41,6 +43,7 @@ struct RefereeInput {
   bool driving = false;   // AS Driving
   bool finished = false;  // AS Finished
   std::string emergency;  // why the circuit is open; empty if it is closed
+  bool res_stop = false;  // the RES has opened it
 };
 
 /// Judges a drive by the rules of Formula Student Germany: laps from the first crossing of the
@@ -70,6 +73,7 @@ class Referee {
   void Measure(const VehicleState& state, double time);
   void CheckEnd(const RefereeInput& input, const VehicleState& state, double time);
   void CheckDrive(const RefereeInput& input, const VehicleState& state, double time);
+  void CheckEmergency(const RefereeInput& input, const VehicleState& state, bool moves);
   void CheckStop(const RefereeInput& input, const VehicleState& state, double time);
   void End(bool finished, const std::string& reason);
   bool IsHit(const TrackCone& cone, const Pose2& T_base_map) const;
@@ -95,6 +99,7 @@ class Referee {
   double finish_distance_ = 0.0;
   std::optional<double> driving_since_;
   std::optional<double> last_movement_;
+  std::optional<double> emergency_distance_;  // driven when the circuit opened
   bool outside_ = false;
 };
 

@@ -91,6 +91,7 @@ void Simulator::Step() {
   input.driving = actuators_.state() == as_state_t::STATE_DRIVING;
   input.finished = actuators_.state() == as_state_t::STATE_FINISHED;
   input.emergency = actuators_.emergency();
+  input.res_stop = actuators_.res_stop();
   referee_.Judge(input, vehicle_.state());
   if (tick_ % Period(channels::kTruthTrack) == 0) PublishTruthTrack();
   PublishTruth();
@@ -154,6 +155,7 @@ void Simulator::PublishGnss(const gnss_t& gnss) {
 }
 
 void Simulator::PublishVehicle() {
+  if (race_control_.PressesStop(vehicle_.state())) actuators_.StopByRes();
   const vehicle_t vehicle = race_control_.Vehicle(utime_, actuators_, vehicle_.state());
   vehicle_utime_ = utime_;
   if (can_) return can_->Add(vehicle, vehicle_.state().brake);

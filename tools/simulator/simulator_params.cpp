@@ -142,6 +142,7 @@ RefereeParams LoadReferee(const Config& config) {
   params.finish_limit_s = config.Number("finish_limit_s", {1.0, 600.0});
   params.no_movement_limit_s = config.Number("no_movement_limit_s", {1.0, 600.0});
   params.standstill_mps = config.Number("standstill_mps", {0.001, 1.0});
+  params.braking_distance_m = config.Number("braking_distance_m", {0.0, 100.0});
   return params;
 }
 
@@ -151,6 +152,7 @@ RaceControlParams LoadRaceControl(const Config& config) {
       config.Integer("mission", vehicle_t::MISSION_ACCELERATION, vehicle_t::MISSION_AUTOCROSS);
   params.go_after_ready_s = config.Number("go_after_ready_s", {5.0, 60.0});
   params.brakes_engaged_pressure = config.Number("brakes_engaged_pressure", kShare);
+  params.res_stop_speed_mps = config.Number("res_stop_speed_mps", {0.0, 40.0});
   return params;
 }
 

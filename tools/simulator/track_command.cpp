@@ -20,6 +20,7 @@ using nlohmann::json;
 struct Arguments {
   GeneratorOptions generator;
   double length = 0.0;
+  std::string event = "lap";
   std::string name;
   std::vector<std::string> files;
   std::string file;
@@ -45,7 +46,9 @@ Commands Define(CLI::App& app, Arguments& arguments) {
   app.require_subcommand(1);
   app.footer("Exit: 0 done, 1 ran and failed, 2 wrong usage, 78 bad input.");
   Commands commands{
-      AddCommand(app, "generate", "make a random track that obeys the rules", arguments),
+      AddCommand(app, "generate",
+                 "make a random track that obeys the rules, or the straight of an event",
+                 arguments),
       AddCommand(app, "check",
                  "say what tracks are, and which rules they bend; 78 if one is refused", arguments),
       AddCommand(app, "draw", "draw a track as an SVG picture", arguments),
@@ -61,6 +64,12 @@ Commands Define(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(200.0, 500.0));
   commands.generate->add_option("--clutter", arguments.generator.clutter, "things beside the track")
       ->check(CLI::Range(0, 200))
+      ->capture_default_str();
+  commands.generate
+      ->add_option("--event", arguments.event,
+                   "`lap`: random, as the options above say; `acceleration`: the straight of that "
+                   "event, always the same")
+      ->check(CLI::IsMember({"lap", "acceleration"}))
       ->capture_default_str();
   commands.generate->add_option("--name", arguments.name, "of the track (default: seed N)");
   commands.generate->add_option("--out", arguments.out, "file to write")->required();
@@ -132,7 +141,8 @@ void Report(const Arguments& arguments, const Track& track) {
 
 void Generate(Arguments arguments, bool has_length) {
   if (has_length) arguments.generator.length = arguments.length;
-  Track track = GenerateTrack(arguments.generator);
+  const bool straight = arguments.event == "acceleration";
+  Track track = straight ? AccelerationTrack() : GenerateTrack(arguments.generator);
   if (!arguments.name.empty()) track.name = arguments.name;
   SaveTrack(track, arguments.out);
   Report(arguments, track);

@@ -204,4 +204,35 @@ Track GenerateTrack(const GeneratorOptions& options) {
                            std::to_string(kMaxTries) + " tries");
 }
 
+Track AccelerationTrack() {
+  static constexpr double kLine = 1.7;        // m from the waiting car's centre of gravity
+  static constexpr double kLength = 75.0;     // from line to line
+  static constexpr double kExit = 100.0;      // behind the finish
+  static constexpr double kSpacing = 5.0;     // of a side's cones
+  static constexpr double kHalfWidth = 1.75;  // the rules: 3 m wide at least
+  static constexpr double kGateHalf = 0.5;    // large cones stand so far before and behind a line
+  Track track;
+  track.name = "acceleration";
+  track.closed = false;
+  const double finish = kLine + kLength;
+  const auto add = [&track](double x, ConeColour left, ConeColour right) {
+    track.left.push_back({RoundToMillimetre({x, kHalfWidth}), left});
+    track.right.push_back({RoundToMillimetre({x, -kHalfWidth}), right});
+  };
+  for (int i = -1; kSpacing * i <= kLength + kExit; ++i) {
+    const double x = kLine + kSpacing * i;
+    if (x == kLine || x == finish) {
+      add(x - kGateHalf, ConeColour::kOrangeLarge, ConeColour::kOrangeLarge);
+      add(x + kGateHalf, ConeColour::kOrangeLarge, ConeColour::kOrangeLarge);
+    } else if (x < finish) {
+      add(x, ConeColour::kBlue, ConeColour::kYellow);
+    } else {
+      add(x, ConeColour::kOrange, ConeColour::kOrange);
+    }
+  }
+  track.start_line = {{kLine, kHalfWidth}, {kLine, -kHalfWidth}};
+  track.finish_line = {{finish, kHalfWidth}, {finish, -kHalfWidth}};
+  return track;
+}
+
 }  // namespace hairpin

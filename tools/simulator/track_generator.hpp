@@ -27,4 +27,10 @@ struct GeneratorOptions {
 /// or where there is no room for the clutter.
 Track GenerateTrack(const GeneratorOptions& options);
 
+/// The straight of the acceleration event [Formula Student Germany rules, and what its organisers
+/// build]: 75 m between two gates of large orange cones, 3.5 m wide, cones every 5 m, and 100 m of
+/// lane to stop in between small orange cones. The car waits at the origin, its nose 0.3 m before
+/// the start line.
+Track AccelerationTrack();
+
 }  // namespace hairpin

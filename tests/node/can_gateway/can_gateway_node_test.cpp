@@ -91,7 +91,8 @@ TEST_F(GatewayOnABus, PublishesWhatTheFramesSayAtTheTimeOfTheMeasurement) {
   EXPECT_EQ(vehicle.mission, vehicle_t::MISSION_AUTOCROSS);
   EXPECT_TRUE(vehicle.master_switch_on && vehicle.tractive_system_on);
   EXPECT_TRUE(vehicle.shutdown_circuit_closed && vehicle.brakes_ok && vehicle.res_go);
-  EXPECT_FALSE(vehicle.ebs_activated || vehicle.res_stop);
+  EXPECT_EQ(vehicle.ebs_state, vehicle_t::EBS_ARMED);
+  EXPECT_FALSE(vehicle.res_stop);
   EXPECT_NEAR(vehicle.speed_mps, 20.0 * 0.231, 1e-9);
 }
 

@@ -86,7 +86,7 @@ class Rig {
     const bool stands = state.mission_finished && !m.res_stop && m.speed_mps < 0.1;
     if (stands && state.state == as_state_t::STATE_DRIVING)
       state.state = as_state_t::STATE_FINISHED;
-    if (m.ebs_activated && state.state != as_state_t::STATE_FINISHED)
+    if (m.ebs_state == vehicle_t::EBS_ACTIVATED && state.state != as_state_t::STATE_FINISHED)
       state.state = as_state_t::STATE_EMERGENCY;
     bus.Publish(channels::kAsState, state);
   }

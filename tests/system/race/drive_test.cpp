@@ -74,6 +74,11 @@ TEST(Drive, RefusesWrongUsageAndBadInputByName) {
     return std::pair(code.value_or(-1), drive.Output());
   };
   EXPECT_EQ(run({"--no-such-option"}).first, 2);
+  for (const char* mission : {"skidpad", "inspection"}) {
+    const auto [code, words] = run({"--mission", mission});
+    EXPECT_EQ(code, 2);
+    EXPECT_THAT(words, HasSubstr(std::string("mission ") + mission + " cannot be driven yet"));
+  }
   const auto [fault_code, fault_words] = run({"--fault", "fuson off at 1 s"});
   EXPECT_EQ(fault_code, 2);
   EXPECT_THAT(fault_words, HasSubstr("did you mean fusion?"));

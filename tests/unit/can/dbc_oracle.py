@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """dbc_oracle.py DBC COUNT SEED: COUNT random frames of each message, as canmatrix packs and unpacks them.
+dbc_oracle.py DBC decode ID=PAYLOAD ...: what it reads in these frames, identifier and payload in hex.
 
-A line each: message, payload in hex, signal=value ... (values as exact decimals). Half of them are packed from random
-values, half are unpacked from random bytes.
+A line each: message, payload in hex, signal=value ... (values as exact decimals). Of the random ones half are packed from
+random values, half are unpacked from random bytes.
 """
 import logging
 import random
@@ -29,15 +30,29 @@ def unpacked(rng, frame):
     return data, values
 
 
+def show(frame, data, values):
+    print(frame.name, data.hex(), " ".join(f"{name}={value}" for name, value in values.items()))
+
+
+def decode(matrix, words):
+    for word in words:
+        identifier, payload = word.split("=")
+        frame = next(frame for frame in matrix.frames if frame.arbitration_id.id == int(identifier, 16))
+        data = bytes.fromhex(payload)
+        show(frame, data, {name: decoded.phys_value for name, decoded in frame.decode(data).items()})
+
+
 def main():
-    path, count, seed = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
-    rng = random.Random(seed)
+    path, *words = sys.argv[1:]
     matrix = next(iter(canmatrix.formats.loadp(path).values()))
+    if words[0] == "decode":
+        decode(matrix, words[1:])
+        return
+    count, seed = int(words[0]), int(words[1])
+    rng = random.Random(seed)
     for frame in matrix.frames:
         for i in range(count):
-            data, values = (packed if i % 2 == 0 else unpacked)(rng, frame)
-            fields = " ".join(f"{name}={value}" for name, value in values.items())
-            print(frame.name, data.hex(), fields)
+            show(frame, *(packed if i % 2 == 0 else unpacked)(rng, frame))
 
 
 if __name__ == "__main__":

@@ -175,6 +175,23 @@ TEST(CanGateway, SaysFarewellNeutralAndWithoutHeartbeat) {
   EXPECT_EQ(brake.level_percent, 50.0);
 }
 
+TEST(CanGateway, LetsGoOfEveryActuatorWhereTheCarIsTheDrivers) {
+  GatewayRig rig;
+  rig.Run(50);
+  EXPECT_TRUE(rig.brake.enable);
+  rig.state = as_state_t::STATE_MANUAL;
+  rig.moves = false;
+  rig.Run(50);
+  EXPECT_FALSE(rig.brake.enable || rig.steering.enable || rig.front.enable);
+  EXPECT_EQ(rig.brake.level_percent, 0.0);
+  EXPECT_EQ(rig.status.as_state, as_state_t::STATE_MANUAL);
+  EXPECT_EQ(rig.gateway.supervision().emergency(), "");
+  rig.mission_manager_lives = false;
+  rig.Run(50);
+  EXPECT_EQ(rig.gateway.supervision().emergency(), "") << "the circuit is not the computer's now";
+  EXPECT_FALSE(rig.brake.enable);
+}
+
 TEST(CanGateway, TellsTheDataLoggerTenTimesASecond) {
   GatewayRig rig;
   rig.Drive();

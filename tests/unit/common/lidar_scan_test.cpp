@@ -54,6 +54,15 @@ TEST(Crc32c, AgreesWithThePublishedTestVectors) {
   EXPECT_EQ(Crc32c(nullptr, 0), 0u);
 }
 
+TEST(Crc32c, IsTheSameByTablesAtEveryLength) {
+  std::vector<uint8_t> bytes(100);
+  for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<uint8_t>(i * i * 37 + 11);
+  for (size_t from = 0; from < 9; ++from) {
+    for (size_t size = 0; from + size <= bytes.size(); ++size)
+      ASSERT_EQ(Crc32c(bytes.data() + from, size), Crc32cByTables(bytes.data() + from, size));
+  }
+}
+
 TEST(LidarScan, GivesBackWhatWasPackedWithinHalfAStep) {
   std::vector<LidarPoint> points;
   ASSERT_EQ(UnpackPoints(SampleScan(), points), "");

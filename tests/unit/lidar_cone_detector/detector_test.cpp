@@ -6,6 +6,7 @@
 namespace hairpin {
 namespace {
 
+using testing::Not;
 using testing::SizeIs;
 
 const Eigen::Vector3f kNose(1.25f, 0.0f, 0.35f);
@@ -54,6 +55,56 @@ TEST(LidarConeDetector, TakesWallsForNoCones) {
   LidarConeDetector detector(ShippedParams().detector);
   LidarWorld world = LaneBetweenWalls(8);
   const LabelledCloud scan = Scan(world, sensor, 0.02f, 60.0f, 3);
+  ExpectEveryCone(world, detector.Detect(scan.cloud, std::vector{sensor}), 0.05f);
+}
+
+TEST(LidarConeDetector, TakesPostsForNoCones) {
+  const SensorGeometry sensor = UnevenSensor(kNose, 0.2f);
+  LidarConeDetector detector(ShippedParams().detector);
+  LidarWorld world = Lane();
+  const LidarWorld lane = world;
+  world.cones.push_back({{6.0f, 4.0f}, {1.8, 0.03, 0.03}});    // of a sign
+  world.cones.push_back({{7.0f, -4.5f}, {0.85, 0.09, 0.07}});  // a leg
+  world.cones.push_back({{12.0f, 5.0f}, {0.65, 0.12, 0.12}});  // a bollard
+  const LabelledCloud scan = Scan(world, sensor, 0.02f, 60.0f, 3);
+  ExpectEveryCone(lane, detector.Detect(scan.cloud, std::vector{sensor}), 0.05f);
+}
+
+// Seen along the row, each stack shows as a strip beside the one before it, no wider than a cone.
+TEST(LidarConeDetector, TakesARowOfStackedTyresForNoCones) {
+  const SensorGeometry sensor = UnevenSensor(kNose, 0.2f);
+  LidarWorld world;
+  for (int i = 0; i < 5; ++i) {
+    const auto along = static_cast<float>(i);
+    world.cones.push_back({{8.0f + 0.6f * along, 1.5f + 0.25f * along}, {0.38, 0.3, 0.3}});
+  }
+  const LabelledCloud scan = Scan(world, sensor, 0.015f, 60.0f, 1);
+  LidarConeDetectorParams params = ShippedParams().detector;
+  LidarConeDetector detector(params);
+  EXPECT_THAT(detector.Detect(scan.cloud, std::vector{sensor}), SizeIs(0));
+  params.surroundings.min_returns = 1'000'000;
+  LidarConeDetector careless(params);
+  EXPECT_THAT(careless.Detect(scan.cloud, std::vector{sensor}), Not(SizeIs(0)))
+      << "nothing here looks like a cone, and the test shows nothing";
+}
+
+TEST(LidarConeDetector, TakesAConeCloseBeforeAWallForACone) {
+  const SensorGeometry sensor = UnevenSensor(kNose, 0.2f);
+  LidarConeDetector detector(ShippedParams().detector);
+  LidarWorld world;
+  world.cones.push_back({{8.0f, 1.0f}});
+  world.walls.push_back({{8.5f, -3.0f}, {8.5f, 5.0f}, 1.0f});
+  const LabelledCloud scan = Scan(world, sensor, 0.02f, 60.0f, 2);
+  ExpectEveryCone(world, detector.Detect(scan.cloud, std::vector{sensor}), 0.05f);
+}
+
+TEST(LidarConeDetector, TakesTwoConesSideBySideForTwo) {
+  const SensorGeometry sensor = UnevenSensor(kNose, 0.2f);
+  LidarConeDetector detector(ShippedParams().detector);
+  LidarWorld world;
+  world.cones.push_back({{7.0f, 1.0f}});
+  world.cones.push_back({{7.0f, 1.55f}});
+  const LabelledCloud scan = Scan(world, sensor, 0.02f, 60.0f, 2);
   ExpectEveryCone(world, detector.Detect(scan.cloud, std::vector{sensor}), 0.05f);
 }
 

@@ -70,8 +70,8 @@ TEST(ConeFit, TurnsWithTheWorld) {
 }
 
 TEST(Acceptance, JudgesByNumberHeightAndShape) {
-  const AcceptanceParams params{2, 0.2, 1.8, 4.0, 0.12, 0.06};
-  const ConeEvidence cone{10, 0.28f, 0.02f, {12.0f, 12.0f, 0.3f}};
+  const AcceptanceParams params{2, 0.2, 1.8, 4.0, 0.12, 0.05, 0.06};
+  const ConeEvidence cone{10, 0.28f, 0.02f, 0.325f, {12.0f, 12.0f, 0.3f}};
   const auto judge = [&](auto change) {
     ConeEvidence evidence = cone;
     change(evidence);
@@ -82,6 +82,7 @@ TEST(Acceptance, JudgesByNumberHeightAndShape) {
   EXPECT_EQ(judge([](ConeEvidence& e) { e.returns = 2; }), Verdict::kTooFew);
   EXPECT_EQ(judge([](ConeEvidence& e) { e.returns = 26; }), Verdict::kTooMany);
   EXPECT_EQ(judge([](ConeEvidence& e) { e.top = 0.15f; }), Verdict::kTooLow);
+  EXPECT_EQ(judge([](ConeEvidence& e) { e.top = 0.39f; }), Verdict::kTooHigh);
   EXPECT_EQ(judge([](ConeEvidence& e) { e.residual = 0.07f; }), Verdict::kNoCone);
 }
 

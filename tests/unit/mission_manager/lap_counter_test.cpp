@@ -14,11 +14,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-LapCounterParams ShippedParams() {
+MissionManagerParams ShippedMissions() {
   return LoadMissionManagerParams(
-             Config::Load(std::string(HAIRPIN_SOURCE_DIR) + "/config", "mission_manager"))
-      .laps;
+      Config::Load(std::string(HAIRPIN_SOURCE_DIR) + "/config", "mission_manager"));
 }
+
+LapCounterParams ShippedParams() { return ShippedMissions().laps; }
 
 // A car that drives in a straight line or a circle, with its dead reckoning and its view of the
 // cones. True frame: the start pose is the origin, the gate 6 m ahead.
@@ -232,6 +233,50 @@ TEST(FindGate, TurnsWithTheWorld) {
   EXPECT_LT((T_b_a.rotation() * a->direction - b->direction).norm(), 1e-9);
 }
 
+// The nose 0.3 m before the line, the car's centre 1.7 m.
+class Straight : public testing::Test {
+ protected:
+  Straight() {
+    drive.cones.clear();
+    for (const double x : {1.2, 2.2, 76.2, 77.2}) {
+      for (const double y : {2.5, -2.5}) drive.cones.push_back({{x, y}, 0.9});
+    }
+  }
+  Drive drive{ShippedMissions().acceleration};
+};
+
+TEST_F(Straight, IsFinishedAtTheSecondGate) {
+  drive.Go(1.5, 0.0);
+  EXPECT_FALSE(drive.counter.started());
+  drive.Go(0.4, 0.0);
+  EXPECT_TRUE(drive.counter.started());
+  drive.Go(74.6, 0.0);
+  EXPECT_EQ(drive.counter.laps(), 0);
+  drive.Go(0.4, 0.0);
+  EXPECT_EQ(drive.counter.laps(), 1);
+  drive.Go(30.0, 0.0);
+  EXPECT_EQ(drive.counter.laps(), 1);
+}
+
+TEST_F(Straight, IsFinishedByDeadReckoningWhereNoGateIsSeenWithinTheWayToStop) {
+  drive.orange = false;
+  drive.scale = 0.98;
+  drive.Go(1.7 + 75.0, 0.0);
+  EXPECT_TRUE(drive.counter.started());
+  EXPECT_EQ(drive.counter.laps(), 0) << "never before the line";
+  drive.Go(12.0, 0.0);
+  EXPECT_EQ(drive.counter.laps(), 1) << "18 m are left of the 30 to stop in";
+}
+
+TEST_F(Straight, IsFinishedWhereOnlyTheFirstGateWasSeen) {
+  drive.Go(20.0, 0.0);
+  drive.orange = false;
+  drive.Go(57.0, 0.0);
+  EXPECT_EQ(drive.counter.laps(), 0);
+  drive.Go(9.0, 0.0);
+  EXPECT_EQ(drive.counter.laps(), 1);
+}
+
 TEST(LapCounter, RefusesWrongParameters) {
   const auto wrong = [](const std::function<void(LapCounterParams&)>& spoil) {
     LapCounterParams params = ShippedParams();
@@ -244,6 +289,8 @@ TEST(LapCounter, RefusesWrongParameters) {
   wrong([](auto& p) { p.gate.min_width = 0.0; });
   wrong([](auto& p) { p.gate.max_width = p.gate.min_width; });
   wrong([](auto& p) { p.min_lap_length = 0.0; });
+  wrong([](auto& p) { p.course_length = 0.5 * p.min_lap_length; });
+  wrong([](auto& p) { p.course_length = -1.0; });
   wrong([](auto& p) { p.staging_distance = -1.0; });
   wrong([](auto& p) { p.start_within = p.staging_distance; });
   wrong([](auto& p) { p.gate_margin = -1.0; });

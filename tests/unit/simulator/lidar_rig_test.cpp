@@ -105,6 +105,20 @@ TEST(LidarScene, AConeThatWasKnockedDownIsSeenThrough) {
   EXPECT_EQ(returns[cone], 0);
 }
 
+TEST(CentreDrive, HasTheVelocityThatItsPosesSay) {
+  const CentreDrive drive(LoadTrack(HAIRPIN_SOURCE_DIR "/config/tracks/default.yaml"), 8.0);
+  constexpr double kTick = 0.01;
+  // As a detector would deskew a revolution by it.
+  for (int start = 0; start < 2000; start += 3) {
+    Pose2 integrated = drive.At(kTick * start).T_map_base;
+    for (int tick = start; tick < start + 10; ++tick)
+      integrated = integrated * Integrate(drive.At(kTick * tick).velocity, kTick);
+    const Pose2 pose = drive.At(kTick * (start + 10)).T_map_base;
+    ASSERT_NEAR((integrated.position() - pose.position()).norm(), 0.0, 0.015) << start;
+    ASSERT_NEAR(WrapAngle(integrated.yaw - pose.yaw), 0.0, 0.015) << start;
+  }
+}
+
 TEST(ConeShape, StripesAreBrightOnBlueAndDarkOnYellow) {
   const Materials materials = ShippedSimulatorParams().lidars.world.materials;
   const auto reflectivity = [&](ConeColour colour, double height) {

@@ -28,6 +28,7 @@ class Drive {
     input.driving = driving;
     input.finished = finished;
     input.emergency = emergency;
+    input.res_stop = res_stop;
     referee.Judge(input, state);
   }
 
@@ -47,6 +48,7 @@ class Drive {
   Referee referee;
   VehicleState state;
   std::string emergency;
+  bool res_stop = false;
   int64_t tick = 0;
 };
 
@@ -188,6 +190,45 @@ TEST(Referee, EndsADriveByTheEmergencyBrakeOnceTheCarStands) {
   drive.Stand(11.0, 0.1, false);
   EXPECT_TRUE(drive.referee.done());
   EXPECT_NE(drive.referee.result().reason.find("commands have ceased"), std::string::npos);
+}
+
+class BrakeTest : public testing::Test {
+ protected:
+  static RefereeParams Params() {
+    RefereeParams params = ShippedSimulatorParams().referee;
+    params.braking_distance_m = 10.0;
+    return params;
+  }
+  // At 11 m/s, then along the oval until the car stands, `length` on.
+  void BrakeWithin(double length) {
+    drive.Along(-3.0, 20.0, 11.0);
+    drive.emergency = "stopped by the RES";
+    drive.Along(20.0, 20.0 + length, 5.0);
+    drive.Stand(20.0 + length, 0.1, false);
+  }
+  Drive drive{Params()};
+};
+
+TEST_F(BrakeTest, IsPassedWhereTheCarStandsInTimeOnceTheResWasPressed) {
+  drive.res_stop = true;
+  BrakeWithin(9.5);
+  EXPECT_TRUE(drive.referee.done());
+  EXPECT_TRUE(drive.referee.result().finished) << drive.referee.result().reason;
+  EXPECT_EQ(drive.referee.result().reason, "brake test: stands 9.5 m after the RES");
+}
+
+TEST_F(BrakeTest, IsFailedWhereTheCarRollsOn) {
+  drive.res_stop = true;
+  BrakeWithin(10.5);
+  EXPECT_TRUE(drive.referee.done());
+  EXPECT_FALSE(drive.referee.result().finished);
+}
+
+TEST_F(BrakeTest, IsFailedByAnotherEmergency) {
+  drive.emergency = "commands have ceased";
+  BrakeWithin(5.0);
+  EXPECT_TRUE(drive.referee.done());
+  EXPECT_FALSE(drive.referee.result().finished);
 }
 
 TEST(Referee, FinishesAnOpenTrackAtItsOwnLine) {

@@ -28,6 +28,14 @@ Outcome Command(std::vector<std::string> words) {
   return {code, out, ::testing::internal::GetCapturedStderr()};
 }
 
+TEST(TrackCommand, GenerateMakesTheStraightOfAnEvent) {
+  const TemporaryFile file(".yaml");
+  const Outcome outcome = Command({"generate", "--event", "acceleration", "--out", file.path()});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(LoadTrack(file.path()).name, "acceleration");
+  EXPECT_EQ(Command({"generate", "--event", "skidpad", "--out", file.path()}).code, 2);
+}
+
 TEST(TrackCommand, GenerateWritesATrackAndDescribesItAsJson) {
   const TemporaryFile file(".yaml");
   const Outcome outcome = Command({"generate", "--seed", "3", "--clutter", "5", "--name", "mine",

@@ -56,6 +56,27 @@ TEST(TrackGenerator, TheDefaultTrackIsWhatItsCommandMakes) {
             TextOf(std::string(HAIRPIN_SOURCE_DIR) + "/config/tracks/default.yaml"));
 }
 
+TEST(AccelerationTrack, IsWhatLiesAmongTheTracks) {
+  const TemporaryFile file(".yaml");
+  SaveTrack(AccelerationTrack(), file.path());
+  EXPECT_EQ(TextOf(file.path()),
+            TextOf(std::string(HAIRPIN_SOURCE_DIR) + "/config/tracks/acceleration.yaml"));
+}
+
+TEST(AccelerationTrack, IsAStraightOf75MetresThatObeysTheRules) {
+  const Track track = AccelerationTrack();
+  EXPECT_FALSE(FindProblem(track)) << FindProblem(track)->what;
+  EXPECT_TRUE(CheckRules(track).empty()) << CheckRules(track).front();
+  EXPECT_NEAR(track.finish_line.left.x() - track.start_line.left.x(), 75.0, 1e-9);
+  int large = 0;
+  for (const TrackCone& cone : track.left) {
+    EXPECT_EQ(cone.position.y(), 1.75);
+    large += cone.colour == ConeColour::kOrangeLarge ? 1 : 0;
+  }
+  EXPECT_EQ(large, 4);
+  EXPECT_NEAR(track.left.back().position.x() - track.finish_line.left.x(), 100.0, 1e-9);
+}
+
 TEST(TrackGenerator, LapsHaveTheLengthAskedFor) {
   for (const double length : {210.0, 300.0, 495.0}) {
     EXPECT_NEAR(Length(CentreLine(GenerateTrack({3, length, 0})), false), length, 0.02 * length);

@@ -5,8 +5,9 @@
 
 namespace hairpin {
 
-/// A car that follows a track's centre line at constant speed, round and round where it is closed:
-/// motion for recording sensors without anyone driving.
+/// A car that follows a track's centre line, with its corners rounded, at constant speed along the
+/// line and without slip, round and round where it is closed: motion for recording sensors without
+/// anyone driving.
 class CentreDrive {
  public:
   /// `speed` [m/s].
@@ -15,8 +16,9 @@ class CentreDrive {
   VehicleState At(double time) const;
 
  private:
+  Eigen::Vector2d OnLine(double station) const;
   Eigen::Vector2d PositionAt(double station) const;
-  double YawAt(double station) const;
+  Eigen::Vector2d TangentAt(double station) const;
 
   Polyline line_;
   bool closed_;

@@ -1,0 +1,98 @@
+#include <Eigen/LU>
+
+#include "daemons/global_mapper/pose_landmark_graph.hpp"
+#include "daemons/global_mapper/sparse_inverse.hpp"
+
+namespace hairpin {
+namespace {
+
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// A block at (row, column) of the whole, row >= column where they differ.
+template <class Block>
+void Add(const Block& block, Eigen::Index row, Eigen::Index column, Triplets& triplets) {
+  for (Eigen::Index i = 0; i < block.rows(); ++i) {
+    for (Eigen::Index j = 0; j < block.cols(); ++j) {
+      if (row + i >= column + j)
+        triplets.emplace_back(static_cast<int>(row + i), static_cast<int>(column + j), block(i, j));
+    }
+  }
+}
+
+}  // namespace
+
+/// Of all poses, three rows each, and of landmark l from row `first_of[l]` on, or not at all where
+/// that is negative. The lower triangle.
+Eigen::SparseMatrix<double> PoseLandmarkGraph::Information(
+    const std::vector<Eigen::Index>& first_of) const {
+  Triplets triplets;
+  Eigen::Index size = 3 * static_cast<Eigen::Index>(poses_.size());
+  for (const Eigen::Index first : first_of) size += first >= 0 ? 2 : 0;
+  for (size_t i = 0; i < poses_.size(); ++i) {
+    const auto row = 3 * static_cast<Eigen::Index>(i);
+    const PoseNode& pose = poses_[i];
+    if (i > 0) {
+      Eigen::Vector3d r;
+      Eigen::Matrix<double, 3, 3, Eigen::RowMajor> J0, J1;
+      OdometryResidual(pose.odometry, poses_[i - 1].x.data(), pose.x.data(), r.data(), J0.data(),
+                       J1.data());
+      Add(Eigen::Matrix3d(J0.transpose() * J0), row - 3, row - 3, triplets);
+      Add(Eigen::Matrix3d(J1.transpose() * J0), row, row - 3, triplets);
+      Add(Eigen::Matrix3d(J1.transpose() * J1), row, row, triplets);
+    }
+    for (const Sighting& sighting : pose.sightings) {
+      Eigen::Vector2d r;
+      Eigen::Matrix<double, 2, 3, Eigen::RowMajor> Jp;
+      Eigen::Matrix<double, 2, 2, Eigen::RowMajor> Jl;
+      LandmarkResidual(sighting.measurement, pose.x.data(), landmarks_[sighting.landmark].x.data(),
+                       r.data(), Jp.data(), Jl.data());
+      const double weight = WeightOf(pose, sighting);
+      const Eigen::Index l = first_of[sighting.landmark];
+      Add(Eigen::Matrix3d(weight * Jp.transpose() * Jp), row, row, triplets);
+      Add(Eigen::Matrix<double, 2, 3>(weight * Jl.transpose() * Jp), l, row, triplets);
+      Add(Eigen::Matrix2d(weight * Jl.transpose() * Jl), l, l, triplets);
+    }
+  }
+  const auto prior = prior_.information();
+  std::vector<Eigen::Index> place{0, 1, 2};  // of the prior's rows
+  for (const size_t landmark : prior_.landmarks()) {
+    place.push_back(first_of[landmark]);
+    place.push_back(first_of[landmark] + 1);
+  }
+  for (Eigen::Index i = 0; i < prior.rows(); ++i) {
+    for (Eigen::Index j = 0; j < prior.cols(); ++j) {
+      const Eigen::Index row = place[static_cast<size_t>(i)];
+      const Eigen::Index column = place[static_cast<size_t>(j)];
+      if (row >= column)
+        triplets.emplace_back(static_cast<int>(row), static_cast<int>(column), prior(i, j));
+    }
+  }
+  Eigen::SparseMatrix<double> H(size, size);
+  H.setFromTriplets(triplets.begin(), triplets.end());
+  return H;
+}
+
+std::vector<Eigen::Matrix2d> PoseLandmarkGraph::LandmarkCovariances() const {
+  std::vector<bool> known(landmarks_.size(), false);
+  for (const PoseNode& pose : poses_) {
+    for (const Sighting& sighting : pose.sightings) known[sighting.landmark] = true;
+  }
+  for (const size_t landmark : prior_.landmarks()) known[landmark] = true;
+  std::vector<Eigen::Index> first_of(landmarks_.size(), -1);
+  auto next = 3 * static_cast<Eigen::Index>(poses_.size());
+  for (size_t l = 0; l < known.size(); ++l) {
+    if (!known[l]) continue;
+    first_of[l] = next;
+    next += 2;
+  }
+  const SparseInverse inverse(Information(first_of));
+  std::vector<Eigen::Matrix2d> covariances(landmarks_.size(), Eigen::Matrix2d::Zero());
+  for (size_t l = 0; l < known.size(); ++l) {
+    const Eigen::Index i = first_of[l];
+    if (i < 0 || !landmarks_[l].alive) continue;
+    covariances[l] << inverse(i, i), inverse(i + 1, i), inverse(i + 1, i), inverse(i + 1, i + 1);
+  }
+  return covariances;
+}
+
+}  // namespace hairpin
