@@ -155,6 +155,7 @@ double VelocityFilter::FuseGated(SensorMonitor& monitor, int64_t utime,
   Eigen::Vector2d reading = Eigen::Vector2d::Zero();
   reading.head<M>() = measured;
   const bool is_frozen = monitor.IsFrozen(utime, reading, is_moving_);
+  if (is_frozen) monitor.TakeOut(utime);  // no doubt to wait for: what stands in begins at once
   const double gate = M == 1 ? params_.gate_1dof : params_.gate_2dof;
   const bool agrees = innovation.nis <= gate && !is_frozen && is_possible;
   if (monitor.Judge(utime, agrees)) filter_.Apply(innovation);

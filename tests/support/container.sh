@@ -6,6 +6,8 @@ set -euo pipefail
 
 [[ $# -eq 2 ]] || { echo "usage: container.sh FOLDER SCRIPT" >&2; exit 2; }
 export FOLDER=$1 SCRIPT=$2
+SUPPORT=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+export SUPPORT
 rm -f "$FOLDER/exit-code"
 
 boot() {
@@ -17,27 +19,8 @@ boot() {
   root=$scratch/root
   mkdir "$scratch/changes" "$scratch/work" "$root"
   mount -t overlay -o "lowerdir=/,upperdir=$scratch/changes,workdir=$scratch/work" overlay "$root"
-  : > "$root/etc/machine-id"
-  # Nothing but systemd itself, and what is to be tried.
-  find "$root/etc/systemd/system" -path '*.wants/*' -delete
-  local unit
-  for unit in apt-daily.timer apt-daily-upgrade.timer dpkg-db-backup.timer e2scrub_all.timer fstrim.timer man-db.timer; do
-    ln -sf /dev/null "$root/etc/systemd/system/$unit"
-  done
-  cat > "$root/etc/systemd/system/in-container.service" <<UNIT
-[Unit]
-After=multi-user.target
-[Service]
-Type=idle
-Environment=HOME=/root
-StandardOutput=file:/mnt/output
-StandardError=file:/mnt/output
-ExecStart=/bin/bash /mnt/$SCRIPT
-ExecStopPost=/bin/bash -c 'echo \$EXIT_STATUS > /mnt/exit-code; systemctl --force poweroff'
-UNIT
-  mkdir -p "$root/etc/systemd/system/multi-user.target.wants"
-  ln -sf ../in-container.service "$root/etc/systemd/system/multi-user.target.wants/"
-  ln -sf /lib/systemd/system/multi-user.target "$root/etc/systemd/system/default.target"
+  . "$SUPPORT/guest_root.sh"
+  guest_root "$root" "$SCRIPT" in-container
   script -qec "systemd-nspawn --quiet --register=no --keep-unit --boot --private-network --console=read-only \
     --bind=$FOLDER:/mnt -D $root" "$FOLDER/console" < /dev/null > /dev/null || true
 }

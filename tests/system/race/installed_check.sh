@@ -1,9 +1,6 @@
 # Runs inside the container as root: installs the package in /mnt and tries what is promised of it. One line a check,
 # `ok NAME` or `FAILED NAME: why`; exits with 1 if any failed.
-failed=0
-check() {  # NAME CONDITION [WHY]
-  if eval "$2"; then echo "ok $1"; else echo "FAILED $1: ${3:-$2}"; failed=1; fi
-}
+. /mnt/checks.sh
 now_ms() { date +%s%3N; }
 main_pid() { systemctl show -P MainPID "$1"; }
 # Milliseconds until UNIT runs again with another process than PID; gives up after 5 s.
