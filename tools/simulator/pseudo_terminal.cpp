@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <pty.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -32,6 +33,12 @@ PseudoTerminal::~PseudoTerminal() {
 size_t PseudoTerminal::Write(std::span<const uint8_t> bytes) {
   const ssize_t count = write(master_, bytes.data(), bytes.size());
   return count > 0 ? static_cast<size_t>(count) : 0;
+}
+
+size_t PseudoTerminal::Unread() const {
+  int count = 0;
+  if (ioctl(slave_, FIONREAD, &count) != 0) return 0;
+  return static_cast<size_t>(count);
 }
 
 }  // namespace hairpin

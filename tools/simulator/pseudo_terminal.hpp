@@ -19,6 +19,8 @@ class PseudoTerminal {
   const std::string& path() const { return path_; }
   /// Bytes taken; the rest is lost, as on a wire that nobody reads from.
   size_t Write(std::span<const uint8_t> bytes);
+  /// Bytes that wait for a reader.
+  size_t Unread() const;
 
  private:
   int master_ = -1;

@@ -219,13 +219,19 @@ class SurveyTool : public Journal {
   /// Presses and stands still until the journal has `points` lines.
   void Mark(char key, const Eigen::Vector2d& place, int lines) {
     for (int i = 0; i < 3; ++i) Say(place);
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    WaitUntilHeard();  // or what was said at the place before would count
     ASSERT_EQ(write(keys_[1], &key, 1), 1);
     for (int i = 0; i < 2000 && Lines() < lines; ++i) {
       Say(place);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      WaitUntilHeard();
     }
     ASSERT_EQ(Lines(), lines);
+  }
+  void WaitUntilHeard() const {
+    int tries = 0;
+    do {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    } while (receiver_.Unread() > 0 && ++tries < 5000);
   }
   int Lines() const {
     std::ifstream stream(file_);
