@@ -19,15 +19,16 @@ std::string Written(const TemporaryFolder& folder, const std::string& text) {
 }
 
 const char* const kTwoPoses =
-    "LANDMARK 0 1 3 4 0.4 0 0.4\n"
-    "ODOMETRY 0 2 1 0 0 0.01 0 0 0.01 0 0.01\n"
-    "LANDMARK 2 1 2 4 0.4 0 0.4\n";
+    "ODOMETRY 0 1 1 0 0 0.01 0 0 0.01 0 0.01\n"
+    "LANDMARK 1 2 3 4 0.4 0 0.4\n"
+    "ODOMETRY 1 3 1 0 0 0.01 0 0 0.01 0 0.01\n"
+    "LANDMARK 3 2 2 4 0.4 0 0.4\n";
 
 TEST(LoadSlamDataset, ReadsNoiseAsItIsTold) {
   const TemporaryFolder folder;
   const std::string file = Written(folder, kTwoPoses);
   const auto by = [&](NoiseReading reading) {
-    return LoadSlamDataset(file, reading).steps[0].sightings[0];
+    return LoadSlamDataset(file, reading).steps[1].sightings[0];
   };
   const auto scale = [](const SlamDataset::Sighting& sighting) {
     return sighting.measurement.sqrt_information(0, 0);
@@ -45,7 +46,7 @@ TEST(LoadSlamDataset, ReadsNoiseAsItIsTold) {
 
 TEST(LoadSlamDataset, NamesTheLineThatIsWrong) {
   const TemporaryFolder folder;
-  const std::string file = Written(folder, "LANDMARK 0 1 3 4 0.4 0 0.4\nCONE 1 2\n");
+  const std::string file = Written(folder, "ODOMETRY 0 1 1 0 0 1 0 0 1 0 1\nCONE 1 2\n");
   try {
     LoadSlamDataset(file, NoiseReading::kInformation);
     FAIL();
