@@ -79,7 +79,7 @@ TEST_F(GnssDriverNodeTest, PublishesWhatComesFromATerminal) {
 
 TEST_F(GnssDriverNodeTest, CountsBadSentencesIntoItsHeartbeat) {
   Receiver receiver;
-  Heartbeat heartbeat(bus_);
+  Heartbeat heartbeat(bus_, 0);
   GnssDriverProcess node(Params(receiver.path()), bus_, clock_);
   std::string broken = Epoch("123519.30", 23.7664);
   broken.replace(broken.find("23.7"), 4, "99.9");  // the checksum stays
