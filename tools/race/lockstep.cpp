@@ -5,7 +5,6 @@
 namespace hairpin {
 namespace {
 
-constexpr int64_t kPatience = 250'000;     // us of wall time
 constexpr int64_t kStatusPeriod = 20'000;  // us of data time between two PIPELINE_STATUS
 constexpr int kWaitMs = 10;
 constexpr int kShortWaitMs = 1;  // where what is waited for does not wake us
@@ -18,8 +17,8 @@ constexpr int64_t kConesAgeOfOne = 180'000;  // with one
 
 }  // namespace
 
-Lockstep::Lockstep(Transport& transport, SensorLevel level)
-    : transport_(transport), bus_(transport, "lockstep", 1) {
+Lockstep::Lockstep(Transport& transport, SensorLevel level, double patience)
+    : transport_(transport), patience_(patience), bus_(transport, "lockstep", 1) {
   Listen(channels::kVelocity);
   Listen(channels::kDriveCommand);
   Listen(channels::kAsState);
@@ -99,7 +98,7 @@ void Lockstep::Await(int64_t utime, const std::function<bool()>& also) {
   while (!Answered(utime) || !(also_answered || also_silent_)) {
     transport_.Handle(also_answered || also_silent_ ? kWaitMs : kShortWaitMs);
     also_answered = also_answered || also();
-    if (clock_.NowMicros() - start < kPatience) continue;
+    if (SecondsBetween(start, clock_.NowMicros()) < patience_) continue;
     ++missed_;
     also_silent_ = !also_answered;
     for (auto& [channel, answer] : answers_)

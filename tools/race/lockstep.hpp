@@ -19,11 +19,12 @@ namespace hairpin {
 /// that the map's mode uses. Where sensors are raw, for each scan and its cones, and
 /// for GNSS.
 ///
-/// A channel that has not answered within 250 ms of wall time counts as silent and is not waited
-/// for until it speaks again: a dead daemon costs one such wait, not one a tick.
+/// A channel that has not answered within `patience` of wall time counts as silent and is not
+/// waited for until it speaks again: a dead daemon costs one such wait, not one a tick.
 class Lockstep {
  public:
-  Lockstep(Transport& transport, SensorLevel level);
+  /// `patience` [s].
+  Lockstep(Transport& transport, SensorLevel level, double patience);
 
   /// Handles messages until the stack has answered the tick of time `utime`, and `also()` is true:
   /// an answer that comes another way, and is given up in the same manner.
@@ -45,6 +46,7 @@ class Lockstep {
   void Listen(const Channel<M>& channel);
 
   Transport& transport_;
+  double patience_;
   MonotonicClock clock_;
   Bus bus_;
   std::map<std::string, Answer> answers_;

@@ -249,7 +249,7 @@ RaceOutcome RunRace(const RaceOptions& asked, const volatile int& stop) {
       stack = std::make_unique<ProcessStack>(stack_options, transport.url());
     }
     AwaitDaemons(daemons, transport, *stack, stop);
-    lockstep.emplace(transport, level);
+    lockstep.emplace(transport, level, options.patience);
   }
   Bus bus(transport, "simulator", kSimulatorBootId);
   Simulator simulator(config.params, config.car, options.track, options.seed, bus, can.get());

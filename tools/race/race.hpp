@@ -19,6 +19,8 @@ struct RaceOptions {
   bool in_process = false;
   bool attach = false;  // to daemons that run already, instead of starting them
   double speed = 1.0;   // at most this many times real time; 0: as fast as it goes
+  /// How long simulated time waits for the answer of a daemon before it counts as dead [s].
+  double patience = 0.25;
   std::vector<Fault> faults;
   StackOptions stack;
   /// What the simulated car speaks CAN over, to can_gateway: a CAN interface of the kernel, or

@@ -32,6 +32,7 @@ struct Arguments {
   bool log_scans = false;
   double speed = -1.0;  // not given
   double speed_cap = 0.0;
+  double patience = RaceOptions{}.patience;
   std::vector<std::string> faults;
   std::vector<std::string> overrides;
   std::string out;
@@ -120,6 +121,11 @@ void Define(CLI::App& app, Arguments& arguments) {
                  "at most this many times real time once the car is Ready, 0: as fast as it goes "
                  "(default 1; with --in-process 0)")
       ->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--patience", arguments.patience,
+                 "a daemon that has not answered for so long counts as dead [s]; more on a machine "
+                 "that is slower than the car's")
+      ->capture_default_str()
+      ->check(CLI::Range(0.05, 60.0));
   app.add_flag("--in-process", arguments.in_process,
                "all daemons in one process, on memq://; repeatable to the byte");
   app.add_flag("--can{cannelloni}", arguments.can,
@@ -204,6 +210,7 @@ RaceOptions ToOptions(const Arguments& arguments, const Leg& leg) {
   options.speed = arguments.speed >= 0.0 ? arguments.speed : arguments.in_process ? 0.0 : 1.0;
   options.can = arguments.can;
   options.log_scans = arguments.log_scans;
+  options.patience = arguments.patience;
   const SensorLevel level = arguments.sensors == "raw" ? SensorLevel::kRaw : SensorLevel::kCones;
   const std::vector<std::string> sources =
       arguments.attach ? Simulator::Sources() : FaultSources(level, !options.can.empty());

@@ -18,7 +18,7 @@ echo "figure up_s $(cut -d. -f1 /proc/uptime)"
 
 start=$SECONDS
 before=$(frames tx)
-/mnt/hairpin-race --attach --can=can0 --speed 0 --track "$(cat /mnt/track)" --config-dir /mnt/config --program-dir /mnt \
+/mnt/hairpin-race --attach --can=can0 --speed 0 --patience 20 --track "$(cat /mnt/track)" --config-dir /mnt/config --program-dir /mnt \
   --logs-dir /mnt --out /mnt/run > /mnt/race.txt 2>&1
 code=$?
 echo "figure lap_wall_s $(( SECONDS - start ))"
