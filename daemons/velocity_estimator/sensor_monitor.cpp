@@ -1,8 +1,15 @@
 #include "daemons/velocity_estimator/sensor_monitor.hpp"
 
+#include <algorithm>
+
 #include "common/clock.hpp"
 
 namespace hairpin {
+namespace {
+
+constexpr int kFrozenReadings = 3;  // a slow sensor may well say the same twice
+
+}  // namespace
 
 bool SensorMonitor::Judge(int64_t utime, bool agrees) {
   const bool was_silent = !last_utime_ || SecondsBetween(*last_utime_, utime) > deadline_;
@@ -32,8 +39,11 @@ bool SensorMonitor::IsFrozen(int64_t utime, const Eigen::Vector2d& reading, bool
   if (!moving || !reading_since_ || reading != reading_) {
     reading_ = reading;
     reading_since_ = utime;
+    equal_readings_ = 0;
   }
-  return SecondsBetween(*reading_since_, utime) >= params_.frozen_after;
+  equal_readings_ = std::min(equal_readings_ + 1, kFrozenReadings);
+  return equal_readings_ == kFrozenReadings &&
+         SecondsBetween(*reading_since_, utime) >= params_.frozen_after;
 }
 
 SensorState SensorMonitor::StateAt(int64_t now) const {

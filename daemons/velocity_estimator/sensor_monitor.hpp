@@ -34,8 +34,9 @@ class SensorMonitor {
   /// Forgets all judgements, but not since when the readings have been the very same.
   void Forgive();
 
-  /// True once the same values have come for `frozen_after`. Noise makes that impossible for a live
-  /// sensor in motion; at standstill, where `moving` is false, a coarse one may repeat itself.
+  /// True once the same values have come for `frozen_after`, three times at least. Noise makes that
+  /// impossible for a live sensor in motion; at standstill, where `moving` is false, a coarse one
+  /// may repeat itself.
   bool IsFrozen(int64_t utime, const Eigen::Vector2d& reading, bool moving);
 
   /// Silent where nothing was judged within the deadline before `now`.
@@ -51,6 +52,7 @@ class SensorMonitor {
   int64_t streak_start_ = 0;  // of readings that all agree, or all fail
   Eigen::Vector2d reading_ = Eigen::Vector2d::Zero();
   std::optional<int64_t> reading_since_;
+  int equal_readings_ = 0;
 };
 
 }  // namespace hairpin

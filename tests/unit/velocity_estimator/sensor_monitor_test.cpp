@@ -82,5 +82,13 @@ TEST(SensorMonitor, CallsTheSameReadingFrozenOnlyInMotion) {
   EXPECT_FALSE(monitor.IsFrozen(Millis(220), Eigen::Vector2d(3.0, 4.001), true));
 }
 
+TEST(SensorMonitor, LetsASlowSensorSayTheSameTwice) {
+  SensorMonitor monitor(kParams, kDeadline);
+  const Eigen::Vector2d reading(3.0, 4.0);
+  EXPECT_FALSE(monitor.IsFrozen(Millis(0), reading, true));
+  EXPECT_FALSE(monitor.IsFrozen(Millis(300), reading, true));
+  EXPECT_TRUE(monitor.IsFrozen(Millis(600), reading, true));
+}
+
 }  // namespace
 }  // namespace hairpin
