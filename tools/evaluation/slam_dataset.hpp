@@ -33,8 +33,8 @@ struct SlamDataset {
 /// measured. So does GTSAM's load2D [Dellaert 2012].
 ///
 /// Victoria Park has a least cost of 0.08 by kInformation, 2339 by kBearingRange and 3092 by
-/// kCovariance. Which of them the 110 belongs to that is told of iSAM2 is not known: it is a minimum
-/// of none.
+/// kCovariance. Which of them the 110 belongs to that is told of iSAM2 is not known: it is a
+/// minimum of none.
 enum class NoiseReading { kInformation, kCovariance, kBearingRange };
 
 /// Reads lines `ODOMETRY i j dx dy dyaw` and `LANDMARK i j x y` with 6 and 3 noise figures; ids are
