@@ -90,9 +90,13 @@ void PrepareSlowMachine(const fs::path& root) {
   for (const char* unit :
        {"logger", "gnss_driver", "lidar_cone_detector", "lidar_driver@front", "lidar_driver@top"})
     fs::create_symlink("/dev/null", units / (std::string("hairpin-") + unit + ".service"));
-  // All other times of the gateway are the car's, which the frames carry.
-  Process slow(
-      {"sed", "-i", "s/^\\( *bus_silence_s:\\).*/\\1 1.0/", root / "etc/hairpin/can_gateway.yaml"});
+  // All other times of the gateway are the car's, which the frames carry. No log is written, and
+  // the disk is memory.
+  const fs::path config = root / "etc/hairpin";
+  Process slow({"sed", "-i",
+                "s/^\\( *bus_silence_s:\\).*/\\1 1.0/; s/^\\(min_free_disk_gb:\\).*/\\1 0.1/; "
+                "s|^\\(log_folder:\\).*|\\1 /var/lib/hairpin|",
+                config / "can_gateway.yaml", config / "mission_manager.yaml"});
   ASSERT_EQ(slow.Wait(kPatienceMs), 0) << slow.Output();
 }
 
