@@ -27,7 +27,8 @@ constexpr const char* kCanGateway = "can_gateway";
 // In the race's own network namespace.
 constexpr const char* kCarAddress = "127.0.0.1:20000";
 constexpr const char* kGatewayAddress = "127.0.0.1:20001";
-constexpr int kBufferForCones = 200;     // kB: what every kernel gives
+constexpr double kSimulatedBusSilence = 1.0;  // s
+constexpr int kBufferForCones = 200;          // kB: what every kernel gives
 constexpr double kStartPatience = 15.0;  // s of wall time until every daemon must have been heard
 
 /// Waits until simulated time may go on: never faster than `speed` times real time.
@@ -155,6 +156,8 @@ StackOptions StackWith(const RaceOptions& options, const SimulatorParams& simula
     set(kCanGateway, "interface", options.can);
     set(kCanGateway, "cannelloni_local", kGatewayAddress);
     set(kCanGateway, "cannelloni_remote", kCarAddress);
+    // A simulated bus is silent while its computer is busy; the car's never is.
+    if (!options.in_process) set(kCanGateway, "deadman.bus_silence_s", kSimulatedBusSilence);
   }
   if (stack.level == SensorLevel::kRaw) {
     // The track is surveyed: what the receiver measures is told in its frame.
