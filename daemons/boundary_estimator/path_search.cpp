@@ -20,6 +20,10 @@ double OriginSide(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return C
 
 size_t Index(int i) { return static_cast<size_t>(i); }
 
+double GateLogRatio(const std::vector<SideLogRatios>& ratios, const CrossedEdge& edge) {
+  return ratios[Index(edge.left)].left + ratios[Index(edge.right)].right;
+}
+
 int Third(const std::array<int, 3>& vertex, const CrossedEdge& edge) {
   const auto other = [&](int v) { return v != edge.left && v != edge.right; };
   return *std::find_if(vertex.begin(), vertex.end(), other);
@@ -107,8 +111,7 @@ void PathSearch::AddRoot(const Problem& problem, const CrossedEdge& edge, int fr
   node.edge = edge;
   node.next_triangle = next_triangle;
   node.features = PathFeatures(Eigen::Vector2d::Zero(), Eigen::Vector2d::UnitX());
-  node.log_likelihood =
-      problem.ratios[Index(edge.left)].left + problem.ratios[Index(edge.right)].right;
+  node.log_likelihood = GateLogRatio(problem.ratios, edge);
   node.cones.set(Index(edge.left));
   node.cones.set(Index(edge.right));
   if (from_triangle != Triangulation::kOutside) node.triangles.set(Index(from_triangle));
@@ -150,12 +153,14 @@ void PathSearch::AddChild(const Problem& problem, int parent, int vertex, bool o
   node.triangles.set(Index(node.next_triangle));
   node.parent = parent;
   node.next_triangle = next_triangle;
-  if (on_left) {
-    if (counts) node.features.AddLeftSpacing(spacing);
-    node.log_likelihood += problem.ratios[Index(vertex)].left;
+  if (counts && on_left) node.features.AddLeftSpacing(spacing);
+  if (counts && !on_left) node.features.AddRightSpacing(spacing);
+  if (between_gates) {
+    const SideLogRatios& ratios = problem.ratios[Index(vertex)];
+    node.log_likelihood += on_left ? ratios.left : ratios.right;
   } else {
-    if (counts) node.features.AddRightSpacing(spacing);
-    node.log_likelihood += problem.ratios[Index(vertex)].right;
+    node.log_likelihood =
+        GateLogRatio(problem.ratios, node.edge);  // what was passed bounds no path yet
   }
   CrossAndKeep(problem, node);
 }

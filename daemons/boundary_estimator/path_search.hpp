@@ -37,9 +37,8 @@ struct PathSearchResult {
 /// Tree of middle paths through a triangulation [paper III-D]: from the car at the origin, heading
 /// along x, through the midpoints of the edges crossed. A path enters no triangle twice and has no
 /// cone twice, on whichever side. Every node is a candidate; before its first gate a path may cross
-/// edges too wide for one, where cones near the car are missing: they count in colour alone. At
-/// each depth the `beam_width` best by log posterior are expanded. Ties go to the candidate found
-/// first.
+/// edges too wide for one, where cones near the car are missing: they count in nothing. At each
+/// depth the `beam_width` best by log posterior are expanded. Ties go to the candidate found first.
 class PathSearch {
  public:
   static constexpr size_t kMaxCones = 128;

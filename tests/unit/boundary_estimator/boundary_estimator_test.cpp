@@ -71,6 +71,46 @@ TEST(BoundaryEstimator, RunsAlongTheMiddleOfALane) {
   EXPECT_EQ(estimate.winner.log_likelihood, 0.0);
 }
 
+// At the start nothing stands behind the car. Two phantoms far to its sides then put it into a
+// triangle whose other corners are another stretch's.
+TEST(BoundaryEstimator, BeginsInItsOwnLaneWhereItPassesConesOfAnotherBeforeTheFirstGate) {
+  std::vector<MapCone> cones;
+  const auto add = [&](double x, double y, ConeColour colour) {
+    cones.push_back(Cone(static_cast<int64_t>(cones.size()) + 1, x, y, colour));
+  };
+  for (const auto& [x, y] : {std::pair{3.3, 1.5},
+                             {7.7, 1.7},
+                             {12.8, 1.7},
+                             {17.7, 1.6},
+                             {0.7, 5.6},
+                             {5.6, 5.5},
+                             {10.5, 5.5},
+                             {15.3, 5.1},
+                             {20.2, 4.7}})
+    add(x, y, ConeColour::kBlue);
+  for (const auto& [x, y] : {std::pair{3.3, -1.6},
+                             {7.6, -1.6},
+                             {12.8, -1.7},
+                             {17.7, -1.9},
+                             {21.6, -2.6},
+                             {0.3, 8.9},
+                             {5.3, 9.0},
+                             {10.3, 9.1},
+                             {15.3, 8.6}})
+    add(x, y, ConeColour::kYellow);
+  for (const auto& [x, y] : {std::pair{20.4, -0.1}, {0.9, -20.5}, {0.2, 21.1}})
+    add(x, y, ConeColour::kUnknown);
+  const TrackEstimate estimate = Estimate(cones, {0.0, 0.0, 0.0});
+  ASSERT_TRUE(estimate.valid);
+  EXPECT_EQ(estimate.left.front().id, 1);
+  EXPECT_EQ(estimate.right.front().id, 10);
+  for (const PathPoint& point : estimate.path.points) {
+    if (point.position.x() < 15.0) {
+      EXPECT_LT(std::abs(point.position.y()), 0.5);
+    }
+  }
+}
+
 TEST(BoundaryEstimator, FollowsAHairpinOfNineMetresOutsideDiameter) {
   const test::SyntheticTrack track = test::MakeLane({{8.0}, {9.1, 1.0 / 2.9}, {12.0}}, 3.2, 3.0);
   const TrackEstimate estimate = Estimate(ConesOf(track), {2.0, 0.0, 0.0});
