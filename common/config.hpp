@@ -3,17 +3,18 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "common/errors.hpp"
+
 namespace hairpin {
 
 /// Everything wrong with a configuration, a line each: file, line, key, value, rule broken.
-class ConfigError : public std::runtime_error {
+class ConfigError : public InputError {
  public:
-  using std::runtime_error::runtime_error;
+  using InputError::InputError;
 };
 
 /// Closed interval, in the key's own unit.

@@ -7,10 +7,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <iostream>
 #include <random>
 
 #include "common/clock.hpp"
+#include "common/program.hpp"
 
 namespace hairpin {
 namespace {
@@ -107,12 +107,6 @@ void Work(const DaemonSpec& spec, const Options& options, const NodeFactory& fac
   sd_notify(0, "STOPPING=1");
 }
 
-int Fail(const std::string& name, const std::string& problems, int code) {
-  std::istringstream lines(problems);
-  for (std::string line; std::getline(lines, line);) std::cerr << name << ": " << line << '\n';
-  return code;
-}
-
 }  // namespace
 
 const char* BuildId() { return HAIRPIN_BUILD; }
@@ -143,21 +137,12 @@ int RunHosted(const DaemonSpec& spec, int argc, char** argv, const NodeFactory& 
   CLI::App app("hairpin " + spec.name + ": see daemons/" + spec.name + "/README.md", spec.name);
   Options options;
   DefineOptions(app, spec, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
-  CatchSignals();
-  const std::string name = NameOnBus(spec, options);
-  try {
+  return RunProgram(app, argc, argv, [&] {
+    app.name(NameOnBus(spec, options));
+    CatchSignals();
     Work(spec, options, factory);
     return 0;
-  } catch (const ConfigError& error) {
-    return Fail(name, error.what(), kExitConfig);
-  } catch (const std::exception& error) {
-    return Fail(name, error.what(), kExitFailure);
-  }
+  });
 }
 
 }  // namespace hairpin

@@ -9,12 +9,9 @@
 
 #include "common/bus.hpp"
 #include "common/config.hpp"
+#include "common/errors.hpp"
 
 namespace hairpin {
-
-inline constexpr int kExitFailure = 1;
-inline constexpr int kExitUsage = 2;
-inline constexpr int kExitConfig = 78;  // EX_CONFIG; systemd does not restart it
 
 /// The commit this was built from.
 const char* BuildId();

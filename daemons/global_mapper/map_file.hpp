@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/errors.hpp"
 #include "common/geometry.hpp"
 #include "daemons/global_mapper/map_estimate.hpp"
 #include "daemons/global_mapper/start_gate.hpp"
@@ -14,9 +15,9 @@
 namespace hairpin {
 
 /// A map file that cannot be used: "file:line: reason".
-class MapFileError : public std::runtime_error {
+class MapFileError : public InputError {
  public:
-  using std::runtime_error::runtime_error;
+  using InputError::InputError;
 };
 
 /// A finished map as it lies on disk, in map.

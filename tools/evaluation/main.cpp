@@ -1,16 +1,8 @@
-#include <iostream>
-
-#include "common/daemon.hpp"
+#include "common/program.hpp"
 #include "tools/evaluation/commands.hpp"
-#include "tools/evaluation/recording_error.hpp"
 
 namespace hairpin {
 namespace {
-
-int Fail(const std::exception& error, int code) {
-  std::cerr << "hairpin-evaluate: " << error.what() << '\n';
-  return code;
-}
 
 int Main(int argc, char** argv) {
   CLI::App app("Figures from recordings, for people or (--json) for machines", "hairpin-evaluate");
@@ -21,18 +13,7 @@ int Main(int argc, char** argv) {
   AddRunCommand(app);
   AddSlamCommand(app);
   AddVelocityCommand(app);
-  try {
-    app.parse(argc, argv);  // runs the subcommand
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  } catch (const ConfigError& error) {
-    return Fail(error, kExitConfig);
-  } catch (const RecordingError& error) {
-    return Fail(error, kExitConfig);
-  } catch (const std::exception& error) {
-    return Fail(error, kExitFailure);
-  }
+  return RunProgram(app, argc, argv, [] { return 0; });  // parsing runs the subcommand
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <stdexcept>
+#include "common/errors.hpp"
 
 namespace hairpin {
 
 /// A recording that cannot be used: "file: frame N: key: reason".
-class RecordingError : public std::runtime_error {
+class RecordingError : public InputError {
  public:
-  using std::runtime_error::runtime_error;
+  using InputError::InputError;
 };
 
 }  // namespace hairpin

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "common/daemon.hpp"
+#include "common/program.hpp"
 #include "daemons/global_mapper/global_mapper_node.hpp"
 #include "tools/line/line_study.hpp"
 
@@ -34,6 +34,14 @@ void Print(const nlohmann::json& figures) {
       figures.at("least_free_way_m").get<double>());
 }
 
+LineStudy Study(const std::string& file, const RaceLineParams& params) {
+  try {
+    return StudyLine(LoadLineInput(file), params);
+  } catch (const std::invalid_argument& error) {  // no line fits it
+    throw InputError(file + ": " + error.what());
+  }
+}
+
 void Run(const Arguments& arguments) {
   std::vector<std::string> overrides;
   for (const std::string& text : arguments.overrides) overrides.push_back("race_line." + text);
@@ -42,7 +50,7 @@ void Run(const Arguments& arguments) {
           .race_line;
   nlohmann::json lines = nlohmann::json::array();
   for (const std::string& file : arguments.files) {
-    const LineStudy study = StudyLine(LoadLineInput(file), params);
+    const LineStudy study = Study(file, params);
     lines.push_back(ToJson(study));
     if (!arguments.json) Print(lines.back());
     if (arguments.picture.empty()) continue;
@@ -67,22 +75,10 @@ int Main(int argc, char** argv) {
       ->required()
       ->group("");
   app.footer("Exit: 0 done, 1 ran and failed, 2 wrong usage, 78 bad input.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
-  try {
+  return RunProgram(app, argc, argv, [&arguments] {
     Run(arguments);
     return 0;
-  } catch (const ConfigError& error) {
-    std::cerr << "raceline: " << error.what() << '\n';
-  } catch (const std::runtime_error& error) {
-    std::cerr << "raceline: " << error.what() << '\n';
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "raceline: " << error.what() << '\n';
-  }
-  return kExitConfig;
+  });
 }
 
 }  // namespace

@@ -1,16 +1,17 @@
 #pragma once
 
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "common/errors.hpp"
 
 namespace hairpin {
 
 /// A fault text that cannot be understood; says what would be.
-class FaultError : public std::invalid_argument {
+class FaultError : public UsageError {
  public:
-  using std::invalid_argument::invalid_argument;
+  using UsageError::UsageError;
 };
 
 /// "fusion off at 10 s", "local_mapper off at 12.5 s for 2 s": a source (a pipeline, a sensor or a

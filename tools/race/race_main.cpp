@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/program.hpp"
 #include "daemons/mission_manager/missions.hpp"
 #include "tools/race/race.hpp"
 #include "tools/race/summary.hpp"
@@ -71,18 +72,13 @@ bool IsOnAStraight(const std::string& mission) {
   return mission == "acceleration" || mission == "brake_test";
 }
 
-/// A mission that nobody can drive here.
-class MissionError : public std::invalid_argument {
- public:
-  using std::invalid_argument::invalid_argument;
-};
-
+/// Throws UsageError.
 void RequireDrivable(const std::string& mission, int laps) {
   const int32_t number = NumberOf(mission);
-  if (number == vehicle_t::MISSION_MANUAL) throw MissionError("mission manual is the driver's");
+  if (number == vehicle_t::MISSION_MANUAL) throw UsageError("mission manual is the driver's");
   const std::string problem = MissionProblem(number);
-  if (!problem.empty()) throw MissionError(problem);
-  if (IsOnAStraight(mission) && laps > 1) throw MissionError("--laps: a straight has one run");
+  if (!problem.empty()) throw UsageError(problem);
+  if (IsOnAStraight(mission) && laps > 1) throw UsageError("--laps: a straight has one run");
 }
 
 void Define(CLI::App& app, Arguments& arguments) {
@@ -273,43 +269,27 @@ int Drive(const Arguments& arguments) {
   return clean ? 0 : kExitFailure;
 }
 
+void CatchSignals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_requested = 1; };
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
 int Main(int argc, char** argv) {
   CLI::App app("Drives the simulated car round a track with the whole stack, and reports.",
                "drive");
   Arguments arguments;
   Define(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_requested = 1; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  try {
+  return RunProgram(app, argc, argv, [&arguments] {
+    CatchSignals();
     RequireDrivable(arguments.mission, arguments.laps);
     if (arguments.track.empty())
       arguments.track = IsOnAStraight(arguments.mission) ? "acceleration" : "default";
     if (arguments.out.empty())
       arguments.out = DefaultOutDir(arguments.logs_dir, arguments.track, arguments.seed);
     return Drive(arguments);
-  } catch (const MissionError& error) {
-    std::cerr << "drive: " << error.what() << '\n';
-    return kExitUsage;
-  } catch (const FaultError& error) {
-    std::cerr << "drive: " << error.what() << '\n';
-    return kExitUsage;
-  } catch (const TrackError& error) {
-    std::cerr << "drive: " << error.what() << '\n';
-    return kExitConfig;
-  } catch (const ConfigError& error) {
-    std::cerr << "drive: " << error.what() << '\n';
-    return kExitConfig;
-  } catch (const std::exception& error) {
-    std::cerr << "drive: " << error.what() << '\n';
-    return kExitFailure;
-  }
+  });
 }
 
 }  // namespace

@@ -8,15 +8,16 @@
 #include <vector>
 
 #include "common/cone.hpp"
+#include "common/errors.hpp"
 #include "common/geometry.hpp"
 #include "common/local_enu.hpp"
 
 namespace hairpin {
 
 /// A malformed or impossible track: "file:line: reason".
-class TrackError : public std::runtime_error {
+class TrackError : public InputError {
  public:
-  using std::runtime_error::runtime_error;
+  using InputError::InputError;
 };
 
 struct TrackCone {

@@ -5,7 +5,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "common/daemon.hpp"
+#include "common/program.hpp"
 #include "tools/simulator/track_checks.hpp"
 #include "tools/simulator/track_drawing.hpp"
 #include "tools/simulator/track_formats.hpp"
@@ -182,18 +182,7 @@ int RunTrackCommand(int argc, const char* const* argv) {
   CLI::App app("Makes, checks, draws and converts tracks.", "hairpin-track");
   Arguments arguments;
   const Commands commands = Define(app, arguments);
-  try {
-    app.parse(argc, argv);
-    return Run(commands, arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  } catch (const TrackError& error) {
-    std::cerr << error.what() << '\n';
-    return kExitConfig;
-  } catch (const std::exception& error) {
-    std::cerr << "hairpin-track: " << error.what() << '\n';
-    return kExitFailure;
-  }
+  return RunProgram(app, argc, argv, [&] { return Run(commands, arguments); });
 }
 
 }  // namespace hairpin

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/errors.hpp"
+
 namespace hairpin {
 namespace {
 
@@ -54,7 +56,7 @@ SurveyJournal::SurveyJournal(const std::string& file) : file_(file) {
   if (is_open) return;
   const std::string why = std::strerror(errno);
   if (descriptor_ >= 0) close(descriptor_);
-  throw std::runtime_error(file + ": " + why);
+  throw InputError(file + ": " + why);
 }
 
 SurveyJournal::~SurveyJournal() { close(descriptor_); }
@@ -72,8 +74,8 @@ void SurveyJournal::Read(const std::string& text) {
         points_.push_back(ToPoint(entry));
       }
     } catch (const std::exception& error) {
-      throw std::runtime_error(file_ + ":" + std::to_string(number) +
-                               ": is no entry of a journal: " + error.what());
+      throw InputError(file_ + ":" + std::to_string(number) +
+                       ": is no entry of a journal: " + error.what());
     }
   }
 }

@@ -12,7 +12,7 @@ namespace hairpin {
 /// next.
 class SurveyJournal {
  public:
-  /// Opens or makes the file. Throws std::runtime_error where it cannot, or where a whole line is
+  /// Opens or makes the file. Throws InputError where it cannot, or where a whole line is
   /// no entry.
   explicit SurveyJournal(const std::string& file);
   ~SurveyJournal();

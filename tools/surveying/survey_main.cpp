@@ -10,7 +10,7 @@
 #include <map>
 
 #include "common/clock.hpp"
-#include "common/daemon.hpp"
+#include "common/program.hpp"
 #include "daemons/gnss_driver/gnss_driver_node.hpp"
 #include "daemons/gnss_driver/serial_port.hpp"
 #include "tools/surveying/survey.hpp"
@@ -156,22 +156,11 @@ int Main(int argc, char** argv) {
   app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")
       ->envname("HAIRPIN_CONFIG_DIR")
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
-  if (options.journal.empty()) options.journal = options.out + ".journal";
-  try {
+  return RunProgram(app, argc, argv, [&options] {
+    if (options.journal.empty()) options.journal = options.out + ".journal";
     Run(options);
     return 0;
-  } catch (const ConfigError& error) {
-    std::cerr << "hairpin-survey: " << error.what() << '\n';
-    return kExitConfig;
-  } catch (const std::exception& error) {
-    std::cerr << "hairpin-survey: " << error.what() << '\n';
-    return kExitFailure;
-  }
+  });
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "common/daemon.hpp"
+#include "common/program.hpp"
 #include "daemons/lidar_cone_detector/intensity_image.hpp"
 #include "tools/simulator/simulator_params.hpp"
 #include "tools/train/render_clusters.hpp"
@@ -60,21 +60,10 @@ int Main(int argc, char** argv) {
   app.add_option("--scans", arguments.scans, "random worlds, some 30 cones each")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
-  try {
+  return RunProgram(app, argc, argv, [&arguments] {
     Render(arguments);
-  } catch (const ConfigError& error) {
-    std::cerr << "hairpin-render-clusters: " << error.what() << '\n';
-    return kExitConfig;
-  } catch (const std::exception& error) {
-    std::cerr << "hairpin-render-clusters: " << error.what() << '\n';
-    return kExitFailure;
-  }
-  return 0;
+    return 0;
+  });
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
 // hairpin-lidar-scans: records simulated LiDAR scans of a track, without anyone driving.
 #include <CLI/CLI.hpp>
-#include <iostream>
 
 #include "common/clock.hpp"
-#include "common/daemon.hpp"
+#include "common/program.hpp"
 #include "tools/report/log_writer.hpp"
 #include "tools/simulator/lidar/centre_drive.hpp"
 #include "tools/simulator/lidar/scan_recorder.hpp"
@@ -101,24 +100,10 @@ int Main(int argc, char** argv) {
   app.add_option("--duration", arguments.duration, "of the recording [s]")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
-  try {
+  return RunProgram(app, argc, argv, [&arguments] {
     Record(arguments);
-  } catch (const TrackError& error) {
-    std::cerr << "hairpin-lidar-scans: " << error.what() << '\n';
-    return kExitConfig;
-  } catch (const ConfigError& error) {
-    std::cerr << "hairpin-lidar-scans: " << error.what() << '\n';
-    return kExitConfig;
-  } catch (const std::exception& error) {
-    std::cerr << "hairpin-lidar-scans: " << error.what() << '\n';
-    return kExitFailure;
-  }
-  return 0;
+    return 0;
+  });
 }
 
 }  // namespace
