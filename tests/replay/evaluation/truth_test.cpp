@@ -1,20 +1,26 @@
 // The car's own receiver as truth, end to end: a simulated lap, the receiver's recording of it, the
 // tool, and the figures of both truths side by side.
 #include <gmock/gmock.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "daemons/gnss_driver/gnss_driver_process.hpp"
 #include "tests/support/race_run.hpp"
+#include "tests/support/synthetic_run.hpp"
+#include "tools/evaluation/truth_log.hpp"
 #include "tools/report/log_reader.hpp"
 #include "tools/report/run_metrics.hpp"
 #include "tools/report/trajectory.hpp"
 #include "tools/simulator/gnss_receiver.hpp"
+#include "tools/simulator/pseudo_terminal.hpp"
 
 namespace hairpin {
 namespace {
@@ -185,6 +191,43 @@ TEST_F(TruthTool, MapSaysOfItsLogWhatItSaysOfTheSimulators) {
   EXPECT_NEAR(received["rmse_m"], simulated["rmse_m"], 0.005);
   EXPECT_EQ(received["matched"], simulated["matched"]);
   EXPECT_EQ(received["error_along_track"].size(), simulated["error_along_track"].size());
+}
+
+TEST_F(TruthTool, ARecordingSaysWhatTheDriverHeardOnItsPort) {
+  const std::string file = Record(GnssProtocol::kUbx);
+  GnssDriverParams params =
+      LoadGnssDriverParams(Config::Load(HAIRPIN_SOURCE_DIR "/config", "gnss_driver"));
+  params.origin_is_first_fix = false;
+  params.origin = kOrigin;
+  PseudoTerminal port;
+  params.port = port.path();
+  Transport transport("memq://");
+  Bus bus(transport, "gnss_driver", 1);
+  Bus listener(transport, "test", 2);
+  std::vector<gnss_t> heard;
+  listener.Subscribe(channels::kGnss, [&heard](const gnss_t& fix) { heard.push_back(fix); });
+  ManualClock clock;
+  GnssDriverProcess driver(params, bus, clock);
+  const ReceiverRecording recording = ReadReceiver(file, params, kOrigin);
+  std::ifstream stream(file, std::ios::binary);
+  const std::vector<char> said{std::istreambuf_iterator<char>(stream), {}};
+  Bytes left(reinterpret_cast<const uint8_t*>(said.data()), said.size());
+  // A terminal takes what it has room for, and hands it on a little later.
+  pollfd waiting{driver.descriptors().at(0), POLLIN, 0};
+  while (heard.size() < recording.fixes.size()) {
+    left = left.subspan(port.Write(left.first(std::min<size_t>(left.size(), 500))));
+    ASSERT_GT(poll(&waiting, 1, 30'000), 0) << heard.size() << " fixes so far";
+    driver.Poll();
+    transport.Drain();
+  }
+  ASSERT_EQ(heard.size(), recording.fixes.size());
+  ASSERT_GT(heard.size(), 400u);
+  for (size_t i = 0; i < heard.size(); ++i) {
+    gnss_t expected = recording.fixes[i];
+    expected.boot_id = heard[i].boot_id;
+    expected.sequence = heard[i].sequence;
+    ASSERT_EQ(Encoded(heard[i]), Encoded(expected)) << i;
+  }
 }
 
 TEST_F(TruthTool, SaysWhatIsMissingAndWritesNoLog) {
