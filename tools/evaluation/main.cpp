@@ -12,6 +12,7 @@ int Main(int argc, char** argv) {
   AddPlannerCommand(app);
   AddRunCommand(app);
   AddSlamCommand(app);
+  AddTruthCommand(app);
   AddVelocityCommand(app);
   return RunProgram(app, argc, argv, [] { return 0; });  // parsing runs the subcommand
 }
