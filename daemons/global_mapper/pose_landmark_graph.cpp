@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "daemons/global_mapper/require.hpp"
@@ -39,7 +38,7 @@ size_t PoseLandmarkGraph::AddPose(const OdometryMeasurement& odometry) {
 }
 
 size_t PoseLandmarkGraph::AddLandmark(const Eigen::Vector2d& position) {
-  landmarks_.push_back({{position.x(), position.y()}});
+  landmarks_.push_back({{position.x(), position.y()}, end_pose() - 1});
   return landmarks_.size() - 1;
 }
 
@@ -57,6 +56,8 @@ void PoseLandmarkGraph::MergeLandmark(size_t landmark, size_t into) {
     }
   }
   landmarks_.at(landmark).alive = false;
+  landmarks_.at(into).first_pose =
+      std::min(landmarks_[into].first_pose, landmarks_[landmark].first_pose);
   prior_.Merge(landmark, into);
   RefreezeAll();
 }
@@ -78,15 +79,9 @@ Eigen::Vector2d PoseLandmarkGraph::landmark(size_t number) const {
   return {x[0], x[1]};
 }
 
-size_t PoseLandmarkGraph::NumSightings(size_t landmark) const {
-  size_t count = 0;
-  for (const PoseNode& pose : poses_) {
-    for (const Sighting& sighting : pose.sightings) count += sighting.landmark == landmark ? 1 : 0;
-  }
-  return count;
-}
-
-bool PoseLandmarkGraph::SeenTogether(size_t a, size_t b) const {
+bool PoseLandmarkGraph::MayHaveBeenSeenTogether(size_t a, size_t b) const {
+  if (landmarks_.at(a).first_pose < first_pose_ && landmarks_.at(b).first_pose < first_pose_)
+    return true;
   const auto sees = [](const PoseNode& pose, size_t landmark) {
     return std::any_of(pose.sightings.begin(), pose.sightings.end(),
                        [&](const Sighting& s) { return s.landmark == landmark; });
@@ -203,23 +198,25 @@ void PoseLandmarkGraph::AddTerms(size_t from, LeastSquaresProblem& problem) {
   }
 }
 
-void PoseLandmarkGraph::AddPrior(bool with_pose, const std::vector<size_t>& landmarks,
+std::vector<size_t> PoseLandmarkGraph::SeenFrom(size_t from) const {
+  std::set<size_t> seen;
+  for (size_t i = from; i < end_pose(); ++i) {
+    for (const Sighting& sighting : poses_[i - first_pose_].sightings)
+      seen.insert(sighting.landmark);
+  }
+  return {seen.begin(), seen.end()};
+}
+
+void PoseLandmarkGraph::AddPrior(const InformationPrior::Quadratic& cost, bool with_pose,
+                                 const std::vector<size_t>& landmarks,
                                  LeastSquaresProblem& problem) {
-  std::vector<size_t> known;
-  std::copy_if(landmarks.begin(), landmarks.end(), std::back_inserter(known),
-               [this](size_t landmark) { return prior_.Knows(landmark); });
-  if (!with_pose && known.empty()) return;
-  const auto conditional =
-      prior_.Condition(with_pose, known, poses_.front().x.data(),
-                       [this](size_t landmark) { return landmarks_[landmark].x.data(); });
-  if (!conditional) return;
-  problem.dense_mean = conditional->mean;
-  problem.dense_sqrt_information = Eigen::LLT<Eigen::MatrixXd>(conditional->information).matrixU();
+  problem.dense_mean = cost.mean;
+  problem.dense_sqrt_information = Eigen::LLT<Eigen::MatrixXd>(cost.information).matrixU();
   if (with_pose) {
     problem.dense_blocks.push_back(poses_.front().x.data());
     problem.dense_sizes.push_back(3);
   }
-  for (const size_t landmark : known) {
+  for (const size_t landmark : landmarks) {
     problem.dense_blocks.push_back(landmarks_[landmark].x.data());
     problem.dense_sizes.push_back(2);
   }
@@ -245,11 +242,7 @@ bool PoseLandmarkGraph::SolveWindow() {
   LeastSquaresProblem problem;
   AddTerms(from, problem);
   problem.constant.push_back(poses_[from - 1 - first_pose_].x.data());
-  std::set<size_t> seen;
-  for (size_t i = from; i < end_pose(); ++i) {
-    for (const Sighting& sighting : poses_[i - first_pose_].sightings)
-      seen.insert(sighting.landmark);
-  }
+  std::vector<size_t> seen = SeenFrom(from);
   for (const size_t number : seen) {
     LandmarkNode& landmark = landmarks_[number];
     const Eigen::LLT<Eigen::Matrix2d> factor(landmark.frozen_information);
@@ -257,8 +250,31 @@ bool PoseLandmarkGraph::SolveWindow() {
     problem.unaries.push_back(
         {landmark.x.data(), factor.solve(landmark.frozen_vector), factor.matrixU()});
   }
-  AddPrior(false, {seen.begin(), seen.end()}, problem);
+  std::erase_if(seen, [this](size_t landmark) { return !prior_.Knows(landmark); });
+  if (!seen.empty()) {
+    const auto cost = prior_.Condition(seen, poses_.front().x.data(), [this](size_t landmark) {
+      return landmarks_[landmark].x.data();
+    });
+    if (cost) AddPrior(*cost, false, seen, problem);
+  }
   return Run(problem, params_.window);
+}
+
+void PoseLandmarkGraph::MoveUnseen(const InformationPrior::Marginal& prior,
+                                   const std::vector<size_t>& seen) {
+  Eigen::VectorXd moved = -prior.cost.mean;
+  moved.head<3>() += Eigen::Map<const Eigen::Vector3d>(poses_.front().x.data());
+  Eigen::Index row = 3;
+  for (const size_t landmark : seen) {
+    moved.segment<2>(row) += Eigen::Map<const Eigen::Vector2d>(landmarks_[landmark].x.data());
+    row += 2;
+  }
+  const Eigen::VectorXd others = prior.mean - prior.gain * moved;
+  row = 0;
+  for (const size_t landmark : prior.others) {
+    landmarks_[landmark].x = {others[row], others[row + 1]};
+    row += 2;
+  }
 }
 
 bool PoseLandmarkGraph::SolveAll() { return SolveAll(params_.full); }
@@ -272,10 +288,14 @@ bool PoseLandmarkGraph::SolveAllTrustingSightings() {
 bool PoseLandmarkGraph::SolveAll(const SolverParams& params) {
   LeastSquaresProblem problem;
   AddTerms(first_pose_, problem);
-  std::vector<size_t> all(landmarks_.size());
-  std::iota(all.begin(), all.end(), 0);
-  AddPrior(true, all, problem);
+  // What no pose of the graph sees follows what they do see: Ceres need not know of it.
+  std::vector<size_t> seen = SeenFrom(first_pose_);
+  std::erase_if(seen, [this](size_t landmark) { return !prior_.Knows(landmark); });
+  const auto prior = prior_.Marginalised(seen);
+  if (!prior) return false;
+  AddPrior(prior->cost, true, seen, problem);
   const bool good = Run(problem, params);
+  if (good) MoveUnseen(*prior, seen);
   RefreezeAll();
   return good;
 }

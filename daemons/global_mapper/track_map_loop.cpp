@@ -136,7 +136,7 @@ std::optional<MergeRecord> TrackMap::FindDoubles(int64_t utime) const {
       if (gone[a] || gone[b] || !landmarks[a].alive || !landmarks[b].alive) continue;
       if ((graph_.landmark(a) - graph_.landmark(b)).norm() > params_.loop.same_cone) continue;
       if (!AreCompatible(landmarks[a].colour(), landmarks[b].colour())) continue;
-      if (graph_.SeenTogether(a, b)) continue;
+      if (graph_.MayHaveBeenSeenTogether(a, b)) continue;
       gone[b] = true;
       merge.pairs.emplace_back(static_cast<int64_t>(b), static_cast<int64_t>(a));
     }
