@@ -11,6 +11,7 @@ namespace {
 constexpr double kGateMargin = 2.0;   // m beside the gate's cones that still is through it
 constexpr double kLostSpeed = 5.0;    // m/s, of an unknown motion: the sigma that is assumed
 constexpr double kLostYawRate = 0.3;  // rad/s
+constexpr double kLapOverlap = 30.0;  // m of the lap before that are told with each
 constexpr double kMaxJump = 3.0;      // m past the line at one step: the estimate has jumped
 
 /// Of a car of which nothing is known for `seconds` but that it goes no faster than usual.
@@ -137,20 +138,13 @@ GlobalMapper::Outcome GlobalMapper::Map(const LocalMapInput& map) {
   estimate.cones = map_.Cones();
   estimate.keyframes = static_cast<int>(map_.graph().num_poses());
   estimate.laps = laps_;
+  const double lap_began = lap_odometer_;
   CountLapsOfMap(was_closed, estimate.T_map_base,
                  map_.odometer() + motion.T_from_to.position().norm());
-  if (laps_ > estimate.laps) outcome.driven = Driven();
+  if (laps_ > estimate.laps) outcome.driven = map_.DrivenSince(lap_began - kLapOverlap);
   estimate.laps = laps_;
   outcome.estimate = std::move(estimate);
   return outcome;
-}
-
-std::vector<Eigen::Vector2d> GlobalMapper::Driven() const {
-  std::vector<Eigen::Vector2d> driven;
-  const PoseLandmarkGraph& graph = map_.graph();
-  for (size_t i = graph.first_pose(); i < graph.end_pose(); ++i)
-    driven.push_back(graph.pose(i).position());
-  return driven;
 }
 
 GlobalMapEstimate GlobalMapper::Estimate(const LocalMapInput& map, const Pose2& T_map_base) const {

@@ -47,7 +47,8 @@ class GlobalMapper {
     std::optional<GlobalMapEstimate> estimate;
     std::vector<MapRecord> records;  // for Replay() in a later life
     std::string_view refused;        // why; empty where it was used
-    // Where a lap was finished: positions of the keyframes held, in driving order, map [m].
+    // Where a lap was finished: positions of its keyframes and of some before, in driving order,
+    // map [m].
     std::vector<Eigen::Vector2d> driven{};
   };
   /// Every local map gives an estimate; those that stand far enough from the last keyframe become
@@ -69,7 +70,6 @@ class GlobalMapper {
     int64_t epoch = 0;
     Pose2 T_local_base;
   };
-  std::vector<Eigen::Vector2d> Driven() const;
   Motion MotionSince(const Seen& before, const LocalMapInput& map) const;
   Outcome Localise(const LocalMapInput& map);
   void EndEpoch(const LocalMapInput& next, Outcome& outcome);

@@ -9,6 +9,9 @@
 namespace hairpin {
 namespace {
 
+// Poses a keyframe, so that the lap that was mapped before the loop closed is soon caught up with.
+constexpr int kMarginalisedAtOnce = 5;
+
 Eigen::Matrix2d PointCovariance(const Eigen::Matrix3d& pose, const Eigen::Vector2d& lever) {
   Eigen::Matrix<double, 2, 3> J = Eigen::Matrix<double, 2, 3>::Zero();
   J.leftCols<2>().setIdentity();
@@ -40,6 +43,8 @@ void TrackMapParams::Validate() const {
   RequireGlobalMap(keyframe_distance > 0.0, "keyframe_distance must be > 0");
   RequireGlobalMap(keyframe_angle > 0.0, "keyframe_angle must be > 0");
   RequireGlobalMap(max_keyframes > graph.window_poses, "max_keyframes must be > window_poses");
+  RequireGlobalMap(max_open_keyframes >= max_keyframes,
+                   "max_open_keyframes must be >= max_keyframes");
   RequireGlobalMap(full_solve_keyframes > 0, "full_solve_keyframes must be > 0");
   RequireGlobalMap(max_landmarks > 0, "max_landmarks must be > 0");
   RequireGlobalMap(min_sightings > 0, "min_sightings must be > 0");
@@ -149,12 +154,30 @@ void TrackMap::Apply(const KeyframeRecord& keyframe) {
   if (gap_ && odometer_ - gap_->odometer > params_.memory_distance) gap_.reset();
   last_ = keyframe;
   if (closed_) SharpenCovariance(keyframe);
-  // Two at a time, so that a lap that was mapped before the loop closed is caught up with.
-  for (int i = 0; i < 2 && (closed_ ? graph_.num_poses() > params_.max_keyframes
-                                    : graph_.num_poses() > 4 * params_.max_keyframes);
-       ++i) {
+  odometers_.push_back(odometer_);
+  BoundGraph();
+}
+
+void TrackMap::BoundGraph() {
+  const size_t bound = closed_ ? params_.max_keyframes : params_.max_open_keyframes;
+  for (int i = 0; i < kMarginalisedAtOnce && graph_.num_poses() > bound; ++i) {
+    passed_.push_back({graph_.pose(graph_.first_pose()).position(), odometers_.front()});
+    if (passed_.size() > params_.max_open_keyframes) passed_.pop_front();
     graph_.MarginaliseOldest();
+    odometers_.pop_front();
   }
+}
+
+std::vector<Eigen::Vector2d> TrackMap::DrivenSince(double odometer) const {
+  std::vector<Eigen::Vector2d> driven;
+  for (const Passed& passed : passed_) {
+    if (passed.odometer >= odometer) driven.push_back(passed.position);
+  }
+  for (size_t i = 0; i < odometers_.size(); ++i) {
+    if (odometers_[i] >= odometer)
+      driven.push_back(graph_.pose(graph_.first_pose() + i).position());
+  }
+  return driven;
 }
 
 /// What the sightings of a known map say of the pose: an information update, landmarks being as

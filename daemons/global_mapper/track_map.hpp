@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -33,6 +34,7 @@ struct TrackMapParams {
   double keyframe_distance = 0.0;   // m, > 0
   double keyframe_angle = 0.0;      // rad, > 0
   size_t max_keyframes = 0;         // more are marginalised, > graph.window_poses
+  size_t max_open_keyframes = 0;    // the same until the loop is closed, >= max_keyframes
   size_t full_solve_keyframes = 0;  // between solves of everything once the loop is closed, > 0
   size_t max_landmarks = 0;         // > 0
   int min_sightings = 0;  // keyframes that must have seen a cone before it is published, > 0
@@ -80,8 +82,16 @@ class TrackMap {
   /// Every cone seen often enough, by rising id.
   std::vector<GlobalCone> Cones() const;
   const PoseLandmarkGraph& graph() const { return graph_; }
+  /// Where the car was since this odometer reading: positions of keyframes in driving order, no
+  /// more than the newest `max_open_keyframes` of those that left the graph.
+  std::vector<Eigen::Vector2d> DrivenSince(double odometer) const;
 
  private:
+  struct Passed {
+    Eigen::Vector2d position;
+    double odometer;
+  };
+  void BoundGraph();
   /// A motion across which landmarks are not known again but by their shape: of two epochs of the
   /// local map with too little between them.
   struct Gap {
@@ -125,6 +135,8 @@ class TrackMap {
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  // of the newest pose, map
   std::vector<Eigen::Matrix2d> covariances_;              // of landmarks, at the last full solve
   double odometer_ = 0.0;
+  std::deque<double> odometers_;  // at each pose of the graph
+  std::deque<Passed> passed_;     // poses that left it
   std::optional<Gap> gap_;
   bool closed_ = false;
   size_t keyframes_since_full_ = 0;

@@ -93,7 +93,7 @@ std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
 
 /// The cones seen since the gap among those seen before it, the nearest ones of each.
 std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime) const {
-  const Pose2 after = graph_.pose(gap_->pose);
+  const Pose2 after = graph_.pose(std::max(gap_->pose, graph_.first_pose()));
   std::vector<int64_t> recent;
   std::vector<int64_t> old;
   const auto distance = [&](int64_t l) {

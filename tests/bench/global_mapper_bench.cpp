@@ -12,9 +12,10 @@
 namespace hairpin {
 namespace {
 
-GraphParams Params() {
+TrackMapParams Params() {
+  KeepFreedMemory();
   const Config config = Config::Load(std::string(HAIRPIN_SOURCE_DIR) + "/config", "global_mapper");
-  return LoadGlobalMapperConfig(config).params.map.graph;
+  return LoadGlobalMapperConfig(config).params.map;
 }
 
 /// Of this thread: what other programs on the machine take is not in it.
@@ -26,7 +27,7 @@ double CpuMilliseconds() {
 
 void Batch(benchmark::State& state) {
   const SyntheticLap lap(1);
-  SyntheticLapDriver driver(Params(), lap.poses()[0]);
+  SyntheticLapDriver driver(Params().graph, lap.poses()[0]);
   for (size_t i = 0; i < lap.steps().size(); ++i) driver.Add(lap.steps()[i], i == 0);
   for (auto _ : state) {
     state.PauseTiming();
@@ -37,25 +38,26 @@ void Batch(benchmark::State& state) {
 }
 BENCHMARK(Batch)->Unit(benchmark::kMillisecond);
 
-/// Drives laps pose by pose as TrackMap does: a window each, everything where the loop closes and
-/// each 200 poses from then on, the oldest marginalised beyond 600. Counters: milliseconds per
-/// pose.
+/// Drives laps pose by pose as TrackMap does with the shipped config: a window each, everything
+/// where the loop closes and each `full_solve_keyframes` from then on, the oldest marginalised
+/// beyond `max_keyframes`. Counters: CPU milliseconds per pose of the last lap.
 void Laps(benchmark::State& state) {
   const int laps = static_cast<int>(state.range(0));
   const SyntheticLap lap(1, laps);
+  const TrackMapParams params = Params();
   for (auto _ : state) {
-    SyntheticLapDriver driver(Params(), lap.poses()[0]);
+    SyntheticLapDriver driver(params.graph, lap.poses()[0]);
     std::vector<double> ms;
     for (size_t i = 0; i < lap.steps().size(); ++i) {
       const double start = CpuMilliseconds();
       driver.Add(lap.steps()[i], i == 0);
       const bool closed = i >= SyntheticLap::kPoses;
-      if (closed && i % 200 == 0) {
+      if (closed && (i - SyntheticLap::kPoses) % params.full_solve_keyframes == 0) {
         driver.graph().SolveAll();
       } else {
         driver.graph().SolveWindow();
       }
-      for (int k = 0; k < 2 && closed && driver.graph().num_poses() > SyntheticLap::kPoses; ++k)
+      for (int k = 0; k < 5 && closed && driver.graph().num_poses() > params.max_keyframes; ++k)
         driver.graph().MarginaliseOldest();
       ms.push_back(CpuMilliseconds() - start);
     }
