@@ -9,9 +9,6 @@
 namespace hairpin {
 namespace {
 
-// Poses a keyframe, so that the lap that was mapped before the loop closed is soon caught up with.
-constexpr int kMarginalisedAtOnce = 5;
-
 Eigen::Matrix2d PointCovariance(const Eigen::Matrix3d& pose, const Eigen::Vector2d& lever) {
   Eigen::Matrix<double, 2, 3> J = Eigen::Matrix<double, 2, 3>::Zero();
   J.leftCols<2>().setIdentity();

@@ -28,6 +28,10 @@ struct LoopParams {
   double same_cone = 0.0;         // m: nearer landmarks that were never seen together are one, > 0
 };
 
+/// Poses that a keyframe marginalises at most: the lap that was mapped before the loop closed is
+/// soon caught up with, and no keyframe pays for it.
+inline constexpr int kMarginalisedAtOnce = 5;
+
 struct TrackMapParams {
   GraphParams graph;
   ConeFilter filter;

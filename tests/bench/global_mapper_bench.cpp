@@ -28,7 +28,7 @@ double CpuMilliseconds() {
 void Batch(benchmark::State& state) {
   const SyntheticLap lap(1);
   SyntheticLapDriver driver(Params().graph, lap.poses()[0]);
-  for (size_t i = 0; i < lap.steps().size(); ++i) driver.Add(lap.steps()[i], i == 0);
+  for (const auto& step : lap.steps()) driver.Add(step);
   for (auto _ : state) {
     state.PauseTiming();
     PoseLandmarkGraph graph = driver.graph();
@@ -38,9 +38,8 @@ void Batch(benchmark::State& state) {
 }
 BENCHMARK(Batch)->Unit(benchmark::kMillisecond);
 
-/// Drives laps pose by pose as TrackMap does with the shipped config: a window each, everything
-/// where the loop closes and each `full_solve_keyframes` from then on, the oldest marginalised
-/// beyond `max_keyframes`. Counters: CPU milliseconds per pose of the last lap.
+/// Drives laps pose by pose as TrackMap does with the shipped config. Counters: CPU milliseconds
+/// per pose of the last lap.
 void Laps(benchmark::State& state) {
   const int laps = static_cast<int>(state.range(0));
   const SyntheticLap lap(1, laps);
@@ -48,17 +47,10 @@ void Laps(benchmark::State& state) {
   for (auto _ : state) {
     SyntheticLapDriver driver(params.graph, lap.poses()[0]);
     std::vector<double> ms;
-    for (size_t i = 0; i < lap.steps().size(); ++i) {
+    for (const auto& step : lap.steps()) {
       const double start = CpuMilliseconds();
-      driver.Add(lap.steps()[i], i == 0);
-      const bool closed = i >= SyntheticLap::kPoses;
-      if (closed && (i - SyntheticLap::kPoses) % params.full_solve_keyframes == 0) {
-        driver.graph().SolveAll();
-      } else {
-        driver.graph().SolveWindow();
-      }
-      for (int k = 0; k < 5 && closed && driver.graph().num_poses() > params.max_keyframes; ++k)
-        driver.graph().MarginaliseOldest();
+      if (!driver.Drive(step, params.max_keyframes, params.full_solve_keyframes))
+        state.SkipWithError("the solver failed");
       ms.push_back(CpuMilliseconds() - start);
     }
     std::vector<double> last(ms.end() - SyntheticLap::kPoses, ms.end());
