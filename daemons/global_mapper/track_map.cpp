@@ -9,6 +9,8 @@
 namespace hairpin {
 namespace {
 
+constexpr int kSettlesIn = 2;  // keyframes
+
 Eigen::Matrix2d PointCovariance(const Eigen::Matrix3d& pose, const Eigen::Vector2d& lever) {
   Eigen::Matrix<double, 2, 3> J = Eigen::Matrix<double, 2, 3>::Zero();
   J.leftCols<2>().setIdentity();
@@ -101,7 +103,11 @@ TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion,
     Apply(*removal);
     step.records.emplace_back(*removal);
   }
-  TryToClose(step);
+  if (settles_in_ == 1) {
+    MergeDoubles(step);
+  } else if (settles_in_ == 0) {
+    TryToClose(step);
+  }
   return step;
 }
 
@@ -114,19 +120,20 @@ void TrackMap::Replay(const MapRecord& record) {
   } else if (const auto* merge = std::get_if<MergeRecord>(&record)) {
     Apply(*merge);
     SolveMerged(*merge);
-    Settle();
   } else if (const auto* removal = std::get_if<RemovalRecord>(&record)) {
     Apply(*removal);
   }
 }
 
+/// What a merge leaves to do is spread over the keyframes that follow, each of which has its own
+/// work: landmarks that stand in one place after the first, covariances before the second.
 void TrackMap::Settle() {
+  if (settles_in_ == 0 || --settles_in_ > 0) return;
   covariances_ = graph_.LandmarkCovariances();
-  keyframes_since_full_ = 0;
-  if (closed_) SharpenCovariance(*last_);
 }
 
 void TrackMap::Apply(const KeyframeRecord& keyframe) {
+  Settle();
   const Motion motion{keyframe.T_before_base, keyframe.covariance};
   double driven = 0.0;
   if (!empty()) {
@@ -201,6 +208,8 @@ void TrackMap::Apply(const MergeRecord& merge) {
     table_.Merge(landmark, into);
   }
   closed_ = closed_ || merge.loop;
+  settles_in_ = kSettlesIn;
+  keyframes_since_full_ = 0;
   if (merge.by_shape && !merge.loop) gap_.reset();
 }
 

@@ -118,6 +118,7 @@ class TrackMap {
   void SharpenCovariance(const KeyframeRecord& keyframe);
   bool SolveAfterKeyframe();
   void Settle();
+  void MergeDoubles(Step& step);
   std::optional<RemovalRecord> FindPhantoms(int64_t utime) const;
   std::optional<MergeRecord> FindDoubles(int64_t utime) const;
   std::optional<MergeRecord> FindLoop(int64_t utime) const;
@@ -144,6 +145,7 @@ class TrackMap {
   std::optional<Gap> gap_;
   bool closed_ = false;
   size_t keyframes_since_full_ = 0;
+  int settles_in_ = 0;  // keyframes, after a merge; 0: is settled
 };
 
 }  // namespace hairpin
