@@ -1,6 +1,5 @@
 #include "daemons/global_mapper/information_prior.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <iterator>
 
@@ -127,6 +126,13 @@ void InformationPrior::Merge(size_t landmark, size_t into) {
   first_of_[landmark] = -1;
 }
 
+std::vector<size_t> InformationPrior::KnownAmong(const std::vector<size_t>& landmarks) const {
+  std::vector<size_t> known;
+  std::copy_if(landmarks.begin(), landmarks.end(), std::back_inserter(known),
+               [this](size_t landmark) { return Knows(landmark); });
+  return known;
+}
+
 std::vector<Eigen::Index> InformationPrior::RowsOf(const std::vector<size_t>& landmarks) const {
   std::vector<Eigen::Index> rows;
   for (const size_t landmark : landmarks) {
@@ -165,7 +171,8 @@ std::optional<InformationPrior::Marginal> InformationPrior::Marginalised(
   std::vector<Eigen::Index> kept = RowsOf(landmarks);
   kept.insert(kept.begin(), {0, 1, 2});
   const std::vector<Eigen::Index> others = RowsOf(marginal.others);
-  const Eigen::LLT<Eigen::MatrixXd> of_others(H_(others, others));
+  marginal.information.compute(H_(others, others));
+  const auto& of_others = marginal.information;
   if (of_others.info() != Eigen::Success) return std::nullopt;
   const Eigen::MatrixXd cross = H_(others, kept);
   marginal.gain = of_others.solve(cross);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cstddef>
 #include <functional>
@@ -34,8 +35,7 @@ class InformationPrior {
 
   /// True if the prior says something of this landmark.
   bool Knows(size_t landmark) const { return SlotOf(landmark).has_value(); }
-  /// All landmarks that it knows, in the order of their slots.
-  const std::vector<size_t>& landmarks() const { return landmarks_; }
+  std::vector<size_t> KnownAmong(const std::vector<size_t>& landmarks) const;
 
   /// A quadratic cost of some of the variables.
   struct Quadratic {
@@ -56,12 +56,10 @@ class InformationPrior {
     std::vector<size_t> others;
     Eigen::VectorXd mean;
     Eigen::MatrixXd gain;
+    Eigen::LLT<Eigen::MatrixXd> information;  // of the others, the rest standing at its value
   };
   /// Of these landmarks, each of which it knows. Empty where an information is singular.
   std::optional<Marginal> Marginalised(const std::vector<size_t>& landmarks) const;
-
-  /// Of (oldest pose, landmarks by slot).
-  auto information() const { return H_.topLeftCorner(size(), size()); }
 
  private:
   std::optional<Eigen::Index> SlotOf(size_t landmark) const;

@@ -75,7 +75,8 @@ class PoseLandmarkGraph {
   /// any loss function; the prior of marginalised poses is not in it.
   double Cost() const;
   /// Covariances [m^2] of all landmarks given everything, by number; zero for those that are gone.
-  /// Costs about what two iterations of SolveAll() do.
+  /// Costs about what two iterations of SolveAll() do. Throws std::invalid_argument where the
+  /// information is singular.
   std::vector<Eigen::Matrix2d> LandmarkCovariances() const;
 
  private:
@@ -116,7 +117,9 @@ class PoseLandmarkGraph {
   void MoveUnseen(const InformationPrior::Marginal& prior, const std::vector<size_t>& seen);
   bool SolveAll(const SolverParams& params);
   bool Run(LeastSquaresProblem& problem, const SolverParams& params);
-  Eigen::SparseMatrix<double> Information(const std::vector<Eigen::Index>& first_of) const;
+  Eigen::SparseMatrix<double> Information(const std::vector<Eigen::Index>& first_of,
+                                          const std::vector<Eigen::Index>& prior_rows,
+                                          const Eigen::MatrixXd& prior) const;
 
   GraphParams params_;
   size_t first_pose_ = 0;

@@ -130,6 +130,7 @@ class SyntheticLapDriver {
     return solved;
   }
   PoseLandmarkGraph& graph() { return graph_; }
+  const PoseLandmarkGraph& graph() const { return graph_; }
   Eigen::Vector2d cone(size_t index) const { return graph_.landmark(landmark_of_[index]); }
 
  private:

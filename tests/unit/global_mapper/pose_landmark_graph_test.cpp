@@ -65,8 +65,21 @@ TEST(PoseLandmarkGraph, IsAfterTenLapsWithinACentimetreOfAllTenSolvedAtOnce) {
   EXPECT_LE(windows.graph().num_poses(), 100u);
   SyntheticLapDriver batch = Batch(lap);
   EXPECT_EQ(batch.graph().num_poses(), 6000u);
-  std::printf("WORST %g after full %g cost %g\n", WorstDifference(windows, batch), (windows.graph().SolveAll(), WorstDifference(windows, batch)), batch.graph().Cost());
   EXPECT_LT(WorstDifference(windows, batch), 0.01);
+}
+
+// Most landmarks are known to the prior alone then.
+TEST(PoseLandmarkGraph, LosesNothingOfASolutionByMarginalising) {
+  const SyntheticLap lap(4);
+  const SyntheticLapDriver before = Batch(lap);
+  SyntheticLapDriver after = before;
+  while (after.graph().num_poses() > 50) after.graph().MarginaliseOldest();
+  const auto whole = before.graph().LandmarkCovariances();
+  const auto marginal = after.graph().LandmarkCovariances();
+  for (size_t l = 0; l < whole.size(); ++l)
+    EXPECT_LT((marginal[l] - whole[l]).norm(), 1e-3 * whole[l].norm()) << l;
+  ASSERT_TRUE(after.graph().SolveAll());
+  EXPECT_LT(WorstDifference(before, after), 1e-4);
 }
 
 TEST(PoseLandmarkGraph, MergesALandmarkIntoAnotherEvenAfterMarginalising) {
