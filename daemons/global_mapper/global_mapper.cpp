@@ -138,13 +138,19 @@ GlobalMapper::Outcome GlobalMapper::Map(const LocalMapInput& map) {
   estimate.cones = map_.Cones();
   estimate.keyframes = static_cast<int>(map_.graph().num_poses());
   estimate.laps = laps_;
-  const double lap_began = lap_odometer_;
   CountLapsOfMap(was_closed, estimate.T_map_base,
                  map_.odometer() + motion.T_from_to.position().norm());
-  if (laps_ > estimate.laps) outcome.driven = map_.DrivenSince(lap_began - kLapOverlap);
   estimate.laps = laps_;
+  FinishLap(outcome);
   outcome.estimate = std::move(estimate);
   return outcome;
+}
+
+void GlobalMapper::FinishLap(Outcome& outcome) {
+  if (laps_ == finished_laps_ || !map_.settled()) return;
+  outcome.driven = map_.DrivenSince(lap_began_ - kLapOverlap);
+  lap_began_ = lap_odometer_;
+  finished_laps_ = laps_;
 }
 
 GlobalMapEstimate GlobalMapper::Estimate(const LocalMapInput& map, const Pose2& T_map_base) const {
@@ -195,6 +201,10 @@ void GlobalMapper::Replay(const std::vector<MapRecord>& records) {
     const bool was_closed = map_.loop_closed();
     map_.Replay(record);
     CountLapsOfMap(was_closed, map_.last_pose(), map_.odometer());
+  }
+  if (map_.settled()) {
+    finished_laps_ = laps_;
+    lap_began_ = lap_odometer_;
   }
   if (map_.empty()) return;
   const KeyframeRecord& last = map_.last();

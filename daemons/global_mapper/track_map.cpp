@@ -103,11 +103,7 @@ TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion,
     Apply(*removal);
     step.records.emplace_back(*removal);
   }
-  if (settles_in_ == 1) {
-    MergeDoubles(step);
-  } else if (settles_in_ == 0) {
-    TryToClose(step);
-  }
+  if (settled()) TryToClose(step);
   return step;
 }
 
@@ -118,17 +114,18 @@ void TrackMap::Replay(const MapRecord& record) {
     SolveAfterKeyframe();
     last_->T_map_base = last_pose();
   } else if (const auto* merge = std::get_if<MergeRecord>(&record)) {
+    const bool doubles = settles_in_ == kSettlesIn;  // found with the merge just before
     Apply(*merge);
-    SolveMerged(*merge);
+    if (!doubles) SolveMerged(*merge);
   } else if (const auto* removal = std::get_if<RemovalRecord>(&record)) {
     Apply(*removal);
   }
 }
 
-/// What a merge leaves to do is spread over the keyframes that follow, each of which has its own
-/// work: landmarks that stand in one place after the first, covariances before the second.
+/// What a merge leaves to do is spread over the keyframes that follow: a solve of everything with
+/// the first, now that none is double, and covariances before the second.
 void TrackMap::Settle() {
-  if (settles_in_ == 0 || --settles_in_ > 0) return;
+  if (settled() || --settles_in_ > 0) return;
   covariances_ = graph_.LandmarkCovariances();
 }
 
@@ -221,8 +218,8 @@ void TrackMap::Apply(const RemovalRecord& removal) {
 }
 
 bool TrackMap::SolveAfterKeyframe() {
-  if (!closed_ || ++keyframes_since_full_ < params_.full_solve_keyframes)
-    return graph_.SolveWindow();
+  const bool due = closed_ && ++keyframes_since_full_ >= params_.full_solve_keyframes;
+  if (!due && settles_in_ != kSettlesIn - 1) return graph_.SolveWindow();
   keyframes_since_full_ = 0;
   return graph_.SolveAll();
 }

@@ -82,6 +82,8 @@ class TrackMap {
   Pose2 last_pose() const { return graph_.newest_pose(); }
   const Eigen::Matrix3d& last_covariance() const { return covariance_; }
   bool loop_closed() const { return closed_; }
+  /// False for the two keyframes after a merge, in which what it changed is solved for.
+  bool settled() const { return settles_in_ == 0; }
   double odometer() const { return odometer_; }
   /// Every cone seen often enough, by rising id.
   std::vector<GlobalCone> Cones() const;
@@ -118,7 +120,6 @@ class TrackMap {
   void SharpenCovariance(const KeyframeRecord& keyframe);
   bool SolveAfterKeyframe();
   void Settle();
-  void MergeDoubles(Step& step);
   std::optional<RemovalRecord> FindPhantoms(int64_t utime) const;
   std::optional<MergeRecord> FindDoubles(int64_t utime) const;
   std::optional<MergeRecord> FindLoop(int64_t utime) const;
@@ -145,7 +146,7 @@ class TrackMap {
   std::optional<Gap> gap_;
   bool closed_ = false;
   size_t keyframes_since_full_ = 0;
-  int settles_in_ = 0;  // keyframes, after a merge; 0: is settled
+  int settles_in_ = 0;  // keyframes
 };
 
 }  // namespace hairpin

@@ -160,15 +160,6 @@ void TrackMap::TryToClose(Step& step) {
   if (const auto loop = FindLoop(last_->utime)) TryToMerge(*loop, step);
 }
 
-void TrackMap::MergeDoubles(Step& step) {
-  const auto doubles = FindDoubles(last_->utime);
-  if (!doubles) return;
-  Apply(*doubles);
-  step.solved = SolveMerged(*doubles) && step.solved;
-  step.records.emplace_back(*doubles);
-  last_->T_map_base = last_pose();
-}
-
 bool TrackMap::TryToMerge(const MergeRecord& merge, Step& step) {
   const TrackMap before = *this;
   Apply(merge);
@@ -179,6 +170,10 @@ bool TrackMap::TryToMerge(const MergeRecord& merge, Step& step) {
     return false;
   }
   step.records.emplace_back(merge);
+  if (const auto doubles = FindDoubles(last_->utime)) {
+    Apply(*doubles);
+    step.records.emplace_back(*doubles);
+  }
   last_->T_map_base = last_pose();
   return true;
 }
