@@ -20,6 +20,32 @@ void Add(const Block& block, Eigen::Index row, Eigen::Index column, Triplets& tr
   }
 }
 
+/// The entries of these rows and columns, each of which is there.
+Eigen::MatrixXd DenseBlock(const SparseInverse& inverse, const std::vector<Eigen::Index>& rows) {
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd block(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = 0; j < size; ++j)
+      block(i, j) = inverse(rows[static_cast<size_t>(i)], rows[static_cast<size_t>(j)]);
+  }
+  return block;
+}
+
+/// Of the landmarks that follow others: what is uncertain of them where those stand, and with
+/// those, whose covariance is `followed`.
+void AddOthers(const InformationPrior::Marginal& prior, const Eigen::MatrixXd& followed,
+               std::vector<Eigen::Matrix2d>& covariances) {
+  const Eigen::Index size = prior.gain.rows();
+  const Eigen::MatrixXd root =
+      prior.information.matrixL().solve(Eigen::MatrixXd::Identity(size, size));
+  for (size_t k = 0; k < prior.others.size(); ++k) {
+    const auto first = 2 * static_cast<Eigen::Index>(k);
+    const auto column = root.middleCols<2>(first);
+    const auto gain = prior.gain.middleRows<2>(first);
+    covariances[prior.others[k]] = column.transpose() * column + gain * followed * gain.transpose();
+  }
+}
+
 }  // namespace
 
 /// Of all poses, three rows each, and of landmark l from row `first_of[l]` on, or not at all where
@@ -91,22 +117,7 @@ std::vector<Eigen::Matrix2d> PoseLandmarkGraph::LandmarkCovariances() const {
     const Eigen::Index i = first_of[l];
     covariances[l] << inverse(i, i), inverse(i + 1, i), inverse(i + 1, i), inverse(i + 1, i + 1);
   }
-  // Of those that follow: what they have of their own, and what they follow.
-  const auto size = static_cast<Eigen::Index>(prior_rows.size());
-  Eigen::MatrixXd followed(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    for (Eigen::Index j = 0; j < size; ++j)
-      followed(i, j) =
-          inverse(prior_rows[static_cast<size_t>(i)], prior_rows[static_cast<size_t>(j)]);
-  }
-  const Eigen::MatrixXd root = prior->information.matrixL().solve(
-      Eigen::MatrixXd::Identity(prior->gain.rows(), prior->gain.rows()));
-  for (size_t k = 0; k < prior->others.size(); ++k) {
-    const auto column = root.middleCols<2>(2 * static_cast<Eigen::Index>(k));
-    const auto gain = prior->gain.middleRows<2>(2 * static_cast<Eigen::Index>(k));
-    covariances[prior->others[k]] =
-        column.transpose() * column + gain * followed * gain.transpose();
-  }
+  AddOthers(*prior, DenseBlock(inverse, prior_rows), covariances);
   for (size_t l = 0; l < landmarks_.size(); ++l) {
     if (!landmarks_[l].alive) covariances[l].setZero();
   }
