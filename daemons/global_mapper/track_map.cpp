@@ -159,7 +159,9 @@ void TrackMap::Apply(const KeyframeRecord& keyframe) {
   BoundGraph();
 }
 
+/// What leaves the graph stays linearised where it stands: not before a merge is solved for.
 void TrackMap::BoundGraph() {
+  if (!settled()) return;
   const size_t bound = closed_ ? params_.max_keyframes : params_.max_open_keyframes;
   for (int i = 0; i < kMarginalisedAtOnce && graph_.num_poses() > bound; ++i) {
     passed_.push_back({graph_.pose(graph_.first_pose()).position(), odometers_.front()});
