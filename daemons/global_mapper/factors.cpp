@@ -59,11 +59,19 @@ void OdometryResidual(const OdometryMeasurement& measurement, const double* from
   }
 }
 
+Direction::Direction(double yaw) : cosine(std::cos(yaw)), sine(std::sin(yaw)) {}
+
 void LandmarkResidual(const LandmarkMeasurement& measurement, const double* pose,
                       const double* landmark, double* residual, double* by_pose,
                       double* by_landmark) {
-  const double c = std::cos(pose[2]);
-  const double s = std::sin(pose[2]);
+  LandmarkResidual(measurement, pose, Direction(pose[2]), landmark, residual, by_pose, by_landmark);
+}
+
+void LandmarkResidual(const LandmarkMeasurement& measurement, const double* pose,
+                      const Direction& direction, const double* landmark, double* residual,
+                      double* by_pose, double* by_landmark) {
+  const double c = direction.cosine;
+  const double s = direction.sine;
   const double dx = landmark[0] - pose[0];
   const double dy = landmark[1] - pose[1];
   const double x = c * dx + s * dy;

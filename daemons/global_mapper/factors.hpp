@@ -30,10 +30,21 @@ struct LandmarkMeasurement {
 void OdometryResidual(const OdometryMeasurement& measurement, const double* from, const double* to,
                       double* residual, double* by_from, double* by_to);
 
+/// Of a yaw.
+struct Direction {
+  explicit Direction(double yaw);
+  double cosine;
+  double sine;
+};
+
 /// r = S [R(yaw)^T (l - p) - z].
 void LandmarkResidual(const LandmarkMeasurement& measurement, const double* pose,
                       const double* landmark, double* residual, double* by_pose,
                       double* by_landmark);
+/// The same where the direction of the pose's yaw is known already.
+void LandmarkResidual(const LandmarkMeasurement& measurement, const double* pose,
+                      const Direction& direction, const double* landmark, double* residual,
+                      double* by_pose, double* by_landmark);
 
 /// Cauchy's loss rho(s) = c^2 ln(1 + s / c^2) of a squared residual; its slope is the weight that
 /// the residual keeps. c = 0: no loss, slope 1.

@@ -11,6 +11,7 @@ namespace {
 constexpr double kGateMargin = 2.0;   // m beside the gate's cones that still is through it
 constexpr double kLostSpeed = 5.0;    // m/s, of an unknown motion: the sigma that is assumed
 constexpr double kLostYawRate = 0.3;  // rad/s
+constexpr double kLapOverlap = 30.0;  // m of the lap before that are told with each
 constexpr double kMaxJump = 3.0;      // m past the line at one step: the estimate has jumped
 
 /// Of a car of which nothing is known for `seconds` but that it goes no faster than usual.
@@ -139,18 +140,17 @@ GlobalMapper::Outcome GlobalMapper::Map(const LocalMapInput& map) {
   estimate.laps = laps_;
   CountLapsOfMap(was_closed, estimate.T_map_base,
                  map_.odometer() + motion.T_from_to.position().norm());
-  if (laps_ > estimate.laps) outcome.driven = Driven();
   estimate.laps = laps_;
+  FinishLap(outcome);
   outcome.estimate = std::move(estimate);
   return outcome;
 }
 
-std::vector<Eigen::Vector2d> GlobalMapper::Driven() const {
-  std::vector<Eigen::Vector2d> driven;
-  const PoseLandmarkGraph& graph = map_.graph();
-  for (size_t i = graph.first_pose(); i < graph.end_pose(); ++i)
-    driven.push_back(graph.pose(i).position());
-  return driven;
+void GlobalMapper::FinishLap(Outcome& outcome) {
+  if (laps_ == finished_laps_ || !map_.settled()) return;
+  outcome.driven = map_.DrivenSince(lap_began_ - kLapOverlap);
+  lap_began_ = lap_odometer_;
+  finished_laps_ = laps_;
 }
 
 GlobalMapEstimate GlobalMapper::Estimate(const LocalMapInput& map, const Pose2& T_map_base) const {
@@ -201,6 +201,10 @@ void GlobalMapper::Replay(const std::vector<MapRecord>& records) {
     const bool was_closed = map_.loop_closed();
     map_.Replay(record);
     CountLapsOfMap(was_closed, map_.last_pose(), map_.odometer());
+  }
+  if (map_.settled()) {
+    finished_laps_ = laps_;
+    lap_began_ = lap_odometer_;
   }
   if (map_.empty()) return;
   const KeyframeRecord& last = map_.last();

@@ -47,7 +47,8 @@ class GlobalMapper {
     std::optional<GlobalMapEstimate> estimate;
     std::vector<MapRecord> records;  // for Replay() in a later life
     std::string_view refused;        // why; empty where it was used
-    // Where a lap was finished: positions of the keyframes held, in driving order, map [m].
+    // Where a lap was finished and the map is settled: positions of the lap's keyframes and of some
+    // before, in driving order, map [m].
     std::vector<Eigen::Vector2d> driven{};
   };
   /// Every local map gives an estimate; those that stand far enough from the last keyframe become
@@ -69,7 +70,6 @@ class GlobalMapper {
     int64_t epoch = 0;
     Pose2 T_local_base;
   };
-  std::vector<Eigen::Vector2d> Driven() const;
   Motion MotionSince(const Seen& before, const LocalMapInput& map) const;
   Outcome Localise(const LocalMapInput& map);
   void EndEpoch(const LocalMapInput& next, Outcome& outcome);
@@ -77,6 +77,7 @@ class GlobalMapper {
   void Resume(const PlaceRecord& place);
   Outcome Map(const LocalMapInput& map);
   GlobalMapEstimate Estimate(const LocalMapInput& map, const Pose2& T_map_base) const;
+  void FinishLap(Outcome& outcome);
   void CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer);
   void CountLaps(const Pose2& T_map_base, double odometer, const std::vector<GlobalCone>& cones);
 
@@ -91,6 +92,8 @@ class GlobalMapper {
   double odometer_ = 0.0;
   double lap_odometer_ = 0.0;
   int laps_ = 0;
+  int finished_laps_ = 0;   // those whose map was told
+  double lap_began_ = 0.0;  // the first that was not told, on the odometer [m]
 };
 
 }  // namespace hairpin

@@ -73,6 +73,8 @@ TrackMapParams LoadMap(const Config& config) {
   params.keyframe_angle = config.Number("keyframe_angle_rad", {0.01, 3.0});
   params.max_keyframes = static_cast<size_t>(
       config.Integer("max_keyframes", static_cast<int>(params.graph.window_poses) + 1, 5000));
+  params.max_open_keyframes = static_cast<size_t>(
+      config.Integer("max_open_keyframes", static_cast<int>(params.max_keyframes), 5000));
   params.full_solve_keyframes =
       static_cast<size_t>(config.Integer("full_solve_keyframes", 1, 10000));
   params.max_landmarks =

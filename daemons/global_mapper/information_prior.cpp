@@ -1,7 +1,7 @@
 #include "daemons/global_mapper/information_prior.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+#include <iterator>
 
 namespace hairpin {
 namespace {
@@ -126,17 +126,65 @@ void InformationPrior::Merge(size_t landmark, size_t into) {
   first_of_[landmark] = -1;
 }
 
-std::optional<InformationPrior::Conditional> InformationPrior::Condition(
-    const std::vector<Eigen::Index>& kept, const Eigen::VectorXd& difference) const {
+std::vector<size_t> InformationPrior::KnownAmong(const std::vector<size_t>& landmarks) const {
+  std::vector<size_t> known;
+  std::copy_if(landmarks.begin(), landmarks.end(), std::back_inserter(known),
+               [this](size_t landmark) { return Knows(landmark); });
+  return known;
+}
+
+std::vector<Eigen::Index> InformationPrior::RowsOf(const std::vector<size_t>& landmarks) const {
+  std::vector<Eigen::Index> rows;
+  for (const size_t landmark : landmarks) {
+    const Eigen::Index first = *SlotOf(landmark);
+    rows.push_back(first);
+    rows.push_back(first + 1);
+  }
+  return rows;
+}
+
+std::optional<InformationPrior::Quadratic> InformationPrior::Condition(
+    const std::vector<size_t>& landmarks, const double* pose, const Values& values) const {
+  Eigen::VectorXd difference = -reference_;
+  difference.head<3>() += Eigen::Map<const Eigen::Vector3d>(pose);
+  for (const size_t landmark : landmarks_)
+    difference.segment<2>(*SlotOf(landmark)) += Eigen::Map<const Eigen::Vector2d>(values(landmark));
   // The gradient at the present difference, of which the kept variables' own share is left to
   // solve.
-  Conditional conditional;
-  conditional.information = H_(kept, kept);
-  const Eigen::VectorXd gradient = H_(kept, Eigen::seqN(0, size())) * difference - b_(kept);
-  const Eigen::LLT<Eigen::MatrixXd> factor(conditional.information);
+  const std::vector<Eigen::Index> kept = RowsOf(landmarks);
+  Quadratic cost{H_(kept, kept), {}};
+  const Eigen::LLT<Eigen::MatrixXd> factor(cost.information);
   if (factor.info() != Eigen::Success) return std::nullopt;
-  conditional.mean = reference_(kept) + difference(kept) - factor.solve(gradient);
-  return conditional;
+  const Eigen::VectorXd gradient =
+      H_(Eigen::seqN(0, size()), kept).transpose() * difference - b_(kept);
+  cost.mean = reference_(kept) + difference(kept) - factor.solve(gradient);
+  return cost;
+}
+
+std::optional<InformationPrior::Marginal> InformationPrior::Marginalised(
+    const std::vector<size_t>& landmarks) const {
+  Marginal marginal;
+  std::vector<bool> is_kept(first_of_.size(), false);
+  for (const size_t landmark : landmarks) is_kept[landmark] = true;
+  std::copy_if(landmarks_.begin(), landmarks_.end(), std::back_inserter(marginal.others),
+               [&](size_t landmark) { return !is_kept[landmark]; });
+  std::vector<Eigen::Index> kept = RowsOf(landmarks);
+  kept.insert(kept.begin(), {0, 1, 2});
+  const std::vector<Eigen::Index> others = RowsOf(marginal.others);
+  marginal.information.compute(H_(others, others));
+  const auto& of_others = marginal.information;
+  if (of_others.info() != Eigen::Success) return std::nullopt;
+  const Eigen::MatrixXd cross = H_(others, kept);
+  marginal.gain = of_others.solve(cross);
+  marginal.cost.information = H_(kept, kept);
+  marginal.cost.information.noalias() -= cross.transpose() * marginal.gain;
+  const Eigen::VectorXd alone = of_others.solve(b_(others));
+  const Eigen::LLT<Eigen::MatrixXd> of_kept(marginal.cost.information);
+  if (of_kept.info() != Eigen::Success) return std::nullopt;
+  const Eigen::VectorXd difference = of_kept.solve(b_(kept) - cross.transpose() * alone);
+  marginal.cost.mean = reference_(kept) + difference;
+  marginal.mean = reference_(others) + alone - marginal.gain * difference;
+  return marginal;
 }
 
 }  // namespace hairpin

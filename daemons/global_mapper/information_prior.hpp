@@ -1,7 +1,9 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -33,28 +35,36 @@ class InformationPrior {
 
   /// True if the prior says something of this landmark.
   bool Knows(size_t landmark) const { return SlotOf(landmark).has_value(); }
-  /// All landmarks that it knows, in the order of their slots.
-  const std::vector<size_t>& landmarks() const { return landmarks_; }
+  std::vector<size_t> KnownAmong(const std::vector<size_t>& landmarks) const;
 
-  /// The cost as a function of some of its variables, the others standing at their values.
-  struct Conditional {
+  /// A quadratic cost of some of the variables.
+  struct Quadratic {
     Eigen::MatrixXd information;
     Eigen::VectorXd mean;  // absolute
   };
-  /// Variables: the oldest pose if `with_pose`, then `landmarks`, each of which it knows.
-  /// `values(l)` is where landmark l is now. Empty where the information is singular.
-  template <class Values>
-  std::optional<Conditional> Condition(bool with_pose, const std::vector<size_t>& landmarks,
-                                       const double* pose, const Values& values) const;
+  /// Where every landmark is now, by number: (x, y).
+  using Values = std::function<const double*(size_t)>;
+  /// The cost of these landmarks, each of which it knows, while all else stands at its value. Empty
+  /// where their information is singular.
+  std::optional<Quadratic> Condition(const std::vector<size_t>& landmarks, const double* pose,
+                                     const Values& values) const;
 
-  /// Of (oldest pose, landmarks by slot).
-  auto information() const { return H_.topLeftCorner(size(), size()); }
+  /// The cost of the oldest pose and of some landmarks, while all others are wherever it is least:
+  /// their Schur complement. They follow as mean - gain (x - cost.mean).
+  struct Marginal {
+    Quadratic cost;
+    std::vector<size_t> others;
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd gain;
+    Eigen::LLT<Eigen::MatrixXd> information;  // of the others, the rest standing at its value
+  };
+  /// Of these landmarks, each of which it knows. Empty where an information is singular.
+  std::optional<Marginal> Marginalised(const std::vector<size_t>& landmarks) const;
 
  private:
   std::optional<Eigen::Index> SlotOf(size_t landmark) const;
   Eigen::Index AddSlot(size_t landmark, const double* position);
-  std::optional<Conditional> Condition(const std::vector<Eigen::Index>& kept,
-                                       const Eigen::VectorXd& difference) const;
+  std::vector<Eigen::Index> RowsOf(const std::vector<size_t>& landmarks) const;
   Eigen::Index size() const { return b_.size(); }
 
   Eigen::MatrixXd
@@ -64,25 +74,5 @@ class InformationPrior {
   std::vector<size_t> landmarks_;       // by slot
   std::vector<Eigen::Index> first_of_;  // row by landmark; -1: none
 };
-
-template <class Values>
-std::optional<InformationPrior::Conditional> InformationPrior::Condition(
-    bool with_pose, const std::vector<size_t>& landmarks, const double* pose,
-    const Values& values) const {
-  Eigen::VectorXd difference = -reference_;
-  for (Eigen::Index i = 0; i < 3; ++i) difference[i] += pose[i];
-  for (const size_t landmark : landmarks_) {
-    const double* position = values(landmark);
-    for (Eigen::Index i = 0; i < 2; ++i) difference[*SlotOf(landmark) + i] += position[i];
-  }
-  std::vector<Eigen::Index> kept;
-  if (with_pose) kept = {0, 1, 2};
-  for (const size_t landmark : landmarks) {
-    const Eigen::Index first = *SlotOf(landmark);
-    kept.push_back(first);
-    kept.push_back(first + 1);
-  }
-  return Condition(kept, difference);
-}
 
 }  // namespace hairpin

@@ -1,6 +1,7 @@
 #include <Eigen/LU>
 
 #include "daemons/global_mapper/pose_landmark_graph.hpp"
+#include "daemons/global_mapper/require.hpp"
 #include "daemons/global_mapper/sparse_inverse.hpp"
 
 namespace hairpin {
@@ -19,12 +20,40 @@ void Add(const Block& block, Eigen::Index row, Eigen::Index column, Triplets& tr
   }
 }
 
+/// The entries of these rows and columns, each of which is there.
+Eigen::MatrixXd DenseBlock(const SparseInverse& inverse, const std::vector<Eigen::Index>& rows) {
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd block(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = 0; j < size; ++j)
+      block(i, j) = inverse(rows[static_cast<size_t>(i)], rows[static_cast<size_t>(j)]);
+  }
+  return block;
+}
+
+/// Of the landmarks that follow others: what is uncertain of them where those stand, and with
+/// those, whose covariance is `followed`.
+void AddOthers(const InformationPrior::Marginal& prior, const Eigen::MatrixXd& followed,
+               std::vector<Eigen::Matrix2d>& covariances) {
+  const Eigen::Index size = prior.gain.rows();
+  const Eigen::MatrixXd root =
+      prior.information.matrixL().solve(Eigen::MatrixXd::Identity(size, size));
+  for (size_t k = 0; k < prior.others.size(); ++k) {
+    const auto first = 2 * static_cast<Eigen::Index>(k);
+    const auto column = root.middleCols<2>(first);
+    const auto gain = prior.gain.middleRows<2>(first);
+    covariances[prior.others[k]] = column.transpose() * column + gain * followed * gain.transpose();
+  }
+}
+
 }  // namespace
 
 /// Of all poses, three rows each, and of landmark l from row `first_of[l]` on, or not at all where
-/// that is negative. The lower triangle.
+/// that is negative: what the poses say, and of the rows `prior_rows` together `prior`. The lower
+/// triangle.
 Eigen::SparseMatrix<double> PoseLandmarkGraph::Information(
-    const std::vector<Eigen::Index>& first_of) const {
+    const std::vector<Eigen::Index>& first_of, const std::vector<Eigen::Index>& prior_rows,
+    const Eigen::MatrixXd& prior) const {
   Triplets triplets;
   Eigen::Index size = 3 * static_cast<Eigen::Index>(poses_.size());
   for (const Eigen::Index first : first_of) size += first >= 0 ? 2 : 0;
@@ -53,16 +82,10 @@ Eigen::SparseMatrix<double> PoseLandmarkGraph::Information(
       Add(Eigen::Matrix2d(weight * Jl.transpose() * Jl), l, l, triplets);
     }
   }
-  const auto prior = prior_.information();
-  std::vector<Eigen::Index> place{0, 1, 2};  // of the prior's rows
-  for (const size_t landmark : prior_.landmarks()) {
-    place.push_back(first_of[landmark]);
-    place.push_back(first_of[landmark] + 1);
-  }
   for (Eigen::Index i = 0; i < prior.rows(); ++i) {
     for (Eigen::Index j = 0; j < prior.cols(); ++j) {
-      const Eigen::Index row = place[static_cast<size_t>(i)];
-      const Eigen::Index column = place[static_cast<size_t>(j)];
+      const Eigen::Index row = prior_rows[static_cast<size_t>(i)];
+      const Eigen::Index column = prior_rows[static_cast<size_t>(j)];
       if (row >= column)
         triplets.emplace_back(static_cast<int>(row), static_cast<int>(column), prior(i, j));
     }
@@ -73,24 +96,30 @@ Eigen::SparseMatrix<double> PoseLandmarkGraph::Information(
 }
 
 std::vector<Eigen::Matrix2d> PoseLandmarkGraph::LandmarkCovariances() const {
-  std::vector<bool> known(landmarks_.size(), false);
-  for (const PoseNode& pose : poses_) {
-    for (const Sighting& sighting : pose.sightings) known[sighting.landmark] = true;
-  }
-  for (const size_t landmark : prior_.landmarks()) known[landmark] = true;
+  const std::vector<size_t> seen = SeenFrom(first_pose_);
+  const std::vector<size_t> known = prior_.KnownAmong(seen);
+  const auto prior = prior_.Marginalised(known);
+  RequireGlobalMap(prior.has_value(), "information is not positive definite");
   std::vector<Eigen::Index> first_of(landmarks_.size(), -1);
   auto next = 3 * static_cast<Eigen::Index>(poses_.size());
-  for (size_t l = 0; l < known.size(); ++l) {
-    if (!known[l]) continue;
+  for (const size_t l : seen) {
     first_of[l] = next;
     next += 2;
   }
-  const SparseInverse inverse(Information(first_of));
+  std::vector<Eigen::Index> prior_rows{0, 1, 2};
+  for (const size_t l : known) {
+    prior_rows.push_back(first_of[l]);
+    prior_rows.push_back(first_of[l] + 1);
+  }
+  const SparseInverse inverse(Information(first_of, prior_rows, prior->cost.information));
   std::vector<Eigen::Matrix2d> covariances(landmarks_.size(), Eigen::Matrix2d::Zero());
-  for (size_t l = 0; l < known.size(); ++l) {
+  for (const size_t l : seen) {
     const Eigen::Index i = first_of[l];
-    if (i < 0 || !landmarks_[l].alive) continue;
     covariances[l] << inverse(i, i), inverse(i + 1, i), inverse(i + 1, i), inverse(i + 1, i + 1);
+  }
+  AddOthers(*prior, DenseBlock(inverse, prior_rows), covariances);
+  for (size_t l = 0; l < landmarks_.size(); ++l) {
+    if (!landmarks_[l].alive) covariances[l].setZero();
   }
   return covariances;
 }

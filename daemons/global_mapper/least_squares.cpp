@@ -1,6 +1,7 @@
 #include "daemons/global_mapper/least_squares.hpp"
 
 #include <ceres/ceres.h>
+#include <malloc.h>
 
 #include <deque>
 #include <memory>
@@ -21,17 +22,35 @@ class OdometryCost final : public ceres::SizedCostFunction<3, 3, 3> {
   const OdometryMeasurement* measurement_;
 };
 
+/// The direction of a pose's yaw, found once for all sightings from it.
+class KnownDirection {
+ public:
+  const Direction& Of(double yaw) {
+    if (yaw != yaw_) {
+      yaw_ = yaw;
+      direction_ = Direction(yaw);
+    }
+    return direction_;
+  }
+
+ private:
+  double yaw_ = 0.0;
+  Direction direction_{0.0};
+};
+
 class SightingCost final : public ceres::SizedCostFunction<2, 3, 2> {
  public:
-  explicit SightingCost(const LandmarkMeasurement& measurement) : measurement_(&measurement) {}
+  SightingCost(const LandmarkMeasurement& measurement, KnownDirection& direction)
+      : measurement_(&measurement), direction_(&direction) {}
   bool Evaluate(double const* const* x, double* residual, double** jacobians) const override {
-    LandmarkResidual(*measurement_, x[0], x[1], residual, jacobians ? jacobians[0] : nullptr,
-                     jacobians ? jacobians[1] : nullptr);
+    LandmarkResidual(*measurement_, x[0], direction_->Of(x[0][2]), x[1], residual,
+                     jacobians ? jacobians[0] : nullptr, jacobians ? jacobians[1] : nullptr);
     return true;
   }
 
  private:
   const LandmarkMeasurement* measurement_;
+  KnownDirection* direction_;
 };
 
 class UnaryCost final : public ceres::SizedCostFunction<2, 2> {
@@ -96,6 +115,7 @@ ceres::Solver::Options SolverOptions(const SolverParams& params) {
   // Graphs of this size are sparse throughout: simplicial factors take half the time of supernodal
   // ones.
   options.sparse_linear_algebra_library_type = ceres::CX_SPARSE;
+  options.jacobi_scaling = false;  // a Cholesky factor gains nothing by it
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   // No bound on the time: the same input shall give the same bytes on any machine.
@@ -105,9 +125,16 @@ ceres::Solver::Options SolverOptions(const SolverParams& params) {
 
 }  // namespace
 
+void KeepFreedMemory() {
+  constexpr int kMebibyte = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, 32 * kMebibyte);
+  mallopt(M_TRIM_THRESHOLD, 64 * kMebibyte);
+}
+
 bool Solve(LeastSquaresProblem& problem, const SolverParams& params) {
   std::deque<OdometryCost> odometry;  // deques: Ceres keeps their addresses
   std::deque<SightingCost> sightings;
+  std::deque<KnownDirection> directions;  // by run of sightings from one pose
   std::deque<UnaryCost> unaries;
   std::unique_ptr<DenseCost> dense;
   std::unique_ptr<ceres::LossFunction> loss;
@@ -118,8 +145,11 @@ bool Solve(LeastSquaresProblem& problem, const SolverParams& params) {
     odometry.emplace_back(*term.measurement);
     graph.AddResidualBlock(&odometry.back(), nullptr, term.from, term.to);
   }
+  const double* pose = nullptr;
   for (const auto& term : problem.sightings) {
-    sightings.emplace_back(*term.measurement);
+    if (term.pose != pose) directions.emplace_back();
+    pose = term.pose;
+    sightings.emplace_back(*term.measurement, directions.back());
     graph.AddResidualBlock(&sightings.back(), loss.get(), term.pose, term.landmark);
   }
   for (const auto& term : problem.unaries) {

@@ -47,4 +47,9 @@ struct SolverParams {
 /// failed. [Agarwal, Mierle: Ceres Solver]
 bool Solve(LeastSquaresProblem& problem, const SolverParams& params);
 
+/// For a whole process, at its start: up to 64 MiB of freed memory stay with it. Each solve asks
+/// for the same memory again, and a quarter of its time would go into pages that the kernel takes
+/// back and clears.
+void KeepFreedMemory();
+
 }  // namespace hairpin

@@ -37,7 +37,6 @@ size_t MapStore::Resume(int64_t utime, GlobalMapper& mapper) {
     return 0;
   }
   mapper.Replay(contents.records);
-  saved_laps_ = mapper.laps();
   journal_->Continue(contents.good_bytes);
   return contents.records.size();
 }
@@ -49,14 +48,11 @@ void MapStore::Keep(const GlobalMapper::Outcome& outcome, int64_t session) {
     journal_failed_ = true;
     problem_ = journal_->problem();
   }
-  if (outcome.estimate && outcome.estimate->phase == MapPhase::kLoopClosed &&
-      outcome.estimate->laps > saved_laps_)
-    Save(outcome, session);
+  if (outcome.estimate && !outcome.driven.empty()) Save(outcome, session);
 }
 
 void MapStore::Save(const GlobalMapper::Outcome& outcome, int64_t session) {
   const GlobalMapEstimate& estimate = *outcome.estimate;
-  saved_laps_ = estimate.laps;
   MapFile map;
   map.session = session;
   map.utime = estimate.utime;

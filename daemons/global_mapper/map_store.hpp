@@ -39,7 +39,6 @@ class MapStore {
   std::unique_ptr<Journal> journal_;
   std::string problem_;
   bool journal_failed_ = false;
-  int saved_laps_ = 0;
 };
 
 }  // namespace hairpin

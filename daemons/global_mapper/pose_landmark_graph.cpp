@@ -1,10 +1,7 @@
 #include "daemons/global_mapper/pose_landmark_graph.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <set>
 
 #include "daemons/global_mapper/require.hpp"
 
@@ -39,7 +36,7 @@ size_t PoseLandmarkGraph::AddPose(const OdometryMeasurement& odometry) {
 }
 
 size_t PoseLandmarkGraph::AddLandmark(const Eigen::Vector2d& position) {
-  landmarks_.push_back({{position.x(), position.y()}});
+  landmarks_.push_back({{position.x(), position.y()}, end_pose() - 1});
   return landmarks_.size() - 1;
 }
 
@@ -57,6 +54,8 @@ void PoseLandmarkGraph::MergeLandmark(size_t landmark, size_t into) {
     }
   }
   landmarks_.at(landmark).alive = false;
+  landmarks_.at(into).first_pose =
+      std::min(landmarks_[into].first_pose, landmarks_[landmark].first_pose);
   prior_.Merge(landmark, into);
   RefreezeAll();
 }
@@ -78,15 +77,9 @@ Eigen::Vector2d PoseLandmarkGraph::landmark(size_t number) const {
   return {x[0], x[1]};
 }
 
-size_t PoseLandmarkGraph::NumSightings(size_t landmark) const {
-  size_t count = 0;
-  for (const PoseNode& pose : poses_) {
-    for (const Sighting& sighting : pose.sightings) count += sighting.landmark == landmark ? 1 : 0;
-  }
-  return count;
-}
-
-bool PoseLandmarkGraph::SeenTogether(size_t a, size_t b) const {
+bool PoseLandmarkGraph::MayHaveBeenSeenTogether(size_t a, size_t b) const {
+  if (landmarks_.at(a).first_pose < first_pose_ && landmarks_.at(b).first_pose < first_pose_)
+    return true;
   const auto sees = [](const PoseNode& pose, size_t landmark) {
     return std::any_of(pose.sightings.begin(), pose.sightings.end(),
                        [&](const Sighting& s) { return s.landmark == landmark; });
@@ -137,18 +130,6 @@ double PoseLandmarkGraph::Cost() const {
   return 0.5 * sum;
 }
 
-PoseLandmarkGraph::Values PoseLandmarkGraph::Save() const {
-  Values values;
-  for (const PoseNode& pose : poses_) values.poses.push_back(pose.x);
-  for (const LandmarkNode& landmark : landmarks_) values.landmarks.push_back(landmark.x);
-  return values;
-}
-
-void PoseLandmarkGraph::Restore(const Values& values) {
-  for (size_t i = 0; i < poses_.size(); ++i) poses_[i].x = values.poses[i];
-  for (size_t i = 0; i < landmarks_.size(); ++i) landmarks_[i].x = values.landmarks[i];
-}
-
 double PoseLandmarkGraph::WeightOf(const PoseNode& pose, const Sighting& sighting) const {
   Eigen::Vector2d r;
   LandmarkResidual(sighting.measurement, pose.x.data(), landmarks_[sighting.landmark].x.data(),
@@ -190,94 +171,6 @@ void PoseLandmarkGraph::RefreezeAll() {
   const size_t end = frozen_end_;
   frozen_end_ = first_pose_;
   FreezeUpTo(std::max(end, first_pose_));
-}
-
-void PoseLandmarkGraph::AddTerms(size_t from, LeastSquaresProblem& problem) {
-  for (size_t i = from - first_pose_; i < poses_.size(); ++i) {
-    PoseNode& pose = poses_[i];
-    if (i > 0) problem.odometry.push_back({poses_[i - 1].x.data(), pose.x.data(), &pose.odometry});
-    for (const Sighting& sighting : pose.sightings) {
-      problem.sightings.push_back(
-          {pose.x.data(), landmarks_[sighting.landmark].x.data(), &sighting.measurement});
-    }
-  }
-}
-
-void PoseLandmarkGraph::AddPrior(bool with_pose, const std::vector<size_t>& landmarks,
-                                 LeastSquaresProblem& problem) {
-  std::vector<size_t> known;
-  std::copy_if(landmarks.begin(), landmarks.end(), std::back_inserter(known),
-               [this](size_t landmark) { return prior_.Knows(landmark); });
-  if (!with_pose && known.empty()) return;
-  const auto conditional =
-      prior_.Condition(with_pose, known, poses_.front().x.data(),
-                       [this](size_t landmark) { return landmarks_[landmark].x.data(); });
-  if (!conditional) return;
-  problem.dense_mean = conditional->mean;
-  problem.dense_sqrt_information = Eigen::LLT<Eigen::MatrixXd>(conditional->information).matrixU();
-  if (with_pose) {
-    problem.dense_blocks.push_back(poses_.front().x.data());
-    problem.dense_sizes.push_back(3);
-  }
-  for (const size_t landmark : known) {
-    problem.dense_blocks.push_back(landmarks_[landmark].x.data());
-    problem.dense_sizes.push_back(2);
-  }
-}
-
-bool PoseLandmarkGraph::Run(LeastSquaresProblem& problem, const SolverParams& params) {
-  const Values before = Save();
-  bool good = Solve(problem, params);
-  for (const PoseNode& pose : poses_) {
-    good = good && std::isfinite(pose.x[0] + pose.x[1] + pose.x[2]);
-  }
-  for (const LandmarkNode& landmark : landmarks_) {
-    good = good && std::isfinite(landmark.x[0] + landmark.x[1]);
-  }
-  if (!good) Restore(before);
-  return good;
-}
-
-bool PoseLandmarkGraph::SolveWindow() {
-  if (poses_.size() <= params_.window_poses) return SolveAll();
-  const size_t from = end_pose() - params_.window_poses;
-  FreezeUpTo(from);
-  LeastSquaresProblem problem;
-  AddTerms(from, problem);
-  problem.constant.push_back(poses_[from - 1 - first_pose_].x.data());
-  std::set<size_t> seen;
-  for (size_t i = from; i < end_pose(); ++i) {
-    for (const Sighting& sighting : poses_[i - first_pose_].sightings)
-      seen.insert(sighting.landmark);
-  }
-  for (const size_t number : seen) {
-    LandmarkNode& landmark = landmarks_[number];
-    const Eigen::LLT<Eigen::Matrix2d> factor(landmark.frozen_information);
-    if (landmark.frozen_information.isZero() || factor.info() != Eigen::Success) continue;
-    problem.unaries.push_back(
-        {landmark.x.data(), factor.solve(landmark.frozen_vector), factor.matrixU()});
-  }
-  AddPrior(false, {seen.begin(), seen.end()}, problem);
-  return Run(problem, params_.window);
-}
-
-bool PoseLandmarkGraph::SolveAll() { return SolveAll(params_.full); }
-
-bool PoseLandmarkGraph::SolveAllTrustingSightings() {
-  SolverParams params = params_.full;
-  params.loss_scale = 0.0;
-  return SolveAll(params);
-}
-
-bool PoseLandmarkGraph::SolveAll(const SolverParams& params) {
-  LeastSquaresProblem problem;
-  AddTerms(first_pose_, problem);
-  std::vector<size_t> all(landmarks_.size());
-  std::iota(all.begin(), all.end(), 0);
-  AddPrior(true, all, problem);
-  const bool good = Run(problem, params);
-  RefreezeAll();
-  return good;
 }
 
 void PoseLandmarkGraph::MarginaliseOldest() {

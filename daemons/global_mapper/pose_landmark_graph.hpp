@@ -63,10 +63,8 @@ class PoseLandmarkGraph {
   Pose2 pose(size_t number) const;
   Pose2 newest_pose() const { return pose(end_pose() - 1); }
   Eigen::Vector2d landmark(size_t number) const;
-  /// Poses still in the graph, times they see the landmark.
-  size_t NumSightings(size_t landmark) const;
-  /// True if one pose in the graph sees both.
-  bool SeenTogether(size_t a, size_t b) const;
+  /// True if one pose in the graph sees both, or poses that have left it may have.
+  bool MayHaveBeenSeenTogether(size_t a, size_t b) const;
 
   /// Squared whitened residual of a measurement from the newest pose.
   double SquaredResidual(size_t landmark, const LandmarkMeasurement& measurement) const;
@@ -77,7 +75,8 @@ class PoseLandmarkGraph {
   /// any loss function; the prior of marginalised poses is not in it.
   double Cost() const;
   /// Covariances [m^2] of all landmarks given everything, by number; zero for those that are gone.
-  /// Costs about what two iterations of SolveAll() do.
+  /// Costs about what two iterations of SolveAll() do. Throws std::invalid_argument where the
+  /// information is singular.
   std::vector<Eigen::Matrix2d> LandmarkCovariances() const;
 
  private:
@@ -93,6 +92,7 @@ class PoseLandmarkGraph {
   };
   struct LandmarkNode {
     std::array<double, 2> x;
+    size_t first_pose = 0;  // that could see it
     bool alive = true;
     Eigen::Matrix2d frozen_information = Eigen::Matrix2d::Zero();
     Eigen::Vector2d frozen_vector = Eigen::Vector2d::Zero();  // information times mean
@@ -111,10 +111,15 @@ class PoseLandmarkGraph {
   void FreezeUpTo(size_t number);
   void RefreezeAll();
   void AddTerms(size_t from, LeastSquaresProblem& problem);
-  void AddPrior(bool with_pose, const std::vector<size_t>& landmarks, LeastSquaresProblem& problem);
+  std::vector<size_t> SeenFrom(size_t from) const;
+  void AddPrior(const InformationPrior::Quadratic& cost, bool with_pose,
+                const std::vector<size_t>& landmarks, LeastSquaresProblem& problem);
+  void MoveUnseen(const InformationPrior::Marginal& prior, const std::vector<size_t>& seen);
   bool SolveAll(const SolverParams& params);
   bool Run(LeastSquaresProblem& problem, const SolverParams& params);
-  Eigen::SparseMatrix<double> Information(const std::vector<Eigen::Index>& first_of) const;
+  Eigen::SparseMatrix<double> Information(const std::vector<Eigen::Index>& first_of,
+                                          const std::vector<Eigen::Index>& prior_rows,
+                                          const Eigen::MatrixXd& prior) const;
 
   GraphParams params_;
   size_t first_pose_ = 0;

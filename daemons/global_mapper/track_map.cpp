@@ -9,6 +9,8 @@
 namespace hairpin {
 namespace {
 
+constexpr int kSettlesIn = 2;  // keyframes
+
 Eigen::Matrix2d PointCovariance(const Eigen::Matrix3d& pose, const Eigen::Vector2d& lever) {
   Eigen::Matrix<double, 2, 3> J = Eigen::Matrix<double, 2, 3>::Zero();
   J.leftCols<2>().setIdentity();
@@ -40,6 +42,8 @@ void TrackMapParams::Validate() const {
   RequireGlobalMap(keyframe_distance > 0.0, "keyframe_distance must be > 0");
   RequireGlobalMap(keyframe_angle > 0.0, "keyframe_angle must be > 0");
   RequireGlobalMap(max_keyframes > graph.window_poses, "max_keyframes must be > window_poses");
+  RequireGlobalMap(max_open_keyframes >= max_keyframes,
+                   "max_open_keyframes must be >= max_keyframes");
   RequireGlobalMap(full_solve_keyframes > 0, "full_solve_keyframes must be > 0");
   RequireGlobalMap(max_landmarks > 0, "max_landmarks must be > 0");
   RequireGlobalMap(min_sightings > 0, "min_sightings must be > 0");
@@ -99,7 +103,7 @@ TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion,
     Apply(*removal);
     step.records.emplace_back(*removal);
   }
-  TryToClose(step);
+  if (settled()) TryToClose(step);
   return step;
 }
 
@@ -110,21 +114,23 @@ void TrackMap::Replay(const MapRecord& record) {
     SolveAfterKeyframe();
     last_->T_map_base = last_pose();
   } else if (const auto* merge = std::get_if<MergeRecord>(&record)) {
+    const bool doubles = settles_in_ == kSettlesIn;  // found with the merge just before
     Apply(*merge);
-    SolveMerged(*merge);
-    Settle();
+    if (!doubles) SolveMerged(*merge);
   } else if (const auto* removal = std::get_if<RemovalRecord>(&record)) {
     Apply(*removal);
   }
 }
 
+/// What a merge leaves to do is spread over the keyframes that follow: a solve of everything with
+/// the first, now that none is double, and covariances before the second.
 void TrackMap::Settle() {
+  if (settled() || --settles_in_ > 0) return;
   covariances_ = graph_.LandmarkCovariances();
-  keyframes_since_full_ = 0;
-  if (closed_) SharpenCovariance(*last_);
 }
 
 void TrackMap::Apply(const KeyframeRecord& keyframe) {
+  Settle();
   const Motion motion{keyframe.T_before_base, keyframe.covariance};
   double driven = 0.0;
   if (!empty()) {
@@ -149,12 +155,32 @@ void TrackMap::Apply(const KeyframeRecord& keyframe) {
   if (gap_ && odometer_ - gap_->odometer > params_.memory_distance) gap_.reset();
   last_ = keyframe;
   if (closed_) SharpenCovariance(keyframe);
-  // Two at a time, so that a lap that was mapped before the loop closed is caught up with.
-  for (int i = 0; i < 2 && (closed_ ? graph_.num_poses() > params_.max_keyframes
-                                    : graph_.num_poses() > 4 * params_.max_keyframes);
-       ++i) {
+  odometers_.push_back(odometer_);
+  BoundGraph();
+}
+
+/// What leaves the graph stays linearised where it stands: not before a merge is solved for.
+void TrackMap::BoundGraph() {
+  if (!settled()) return;
+  const size_t bound = closed_ ? params_.max_keyframes : params_.max_open_keyframes;
+  for (int i = 0; i < kMarginalisedAtOnce && graph_.num_poses() > bound; ++i) {
+    passed_.push_back({graph_.pose(graph_.first_pose()).position(), odometers_.front()});
+    if (passed_.size() > params_.max_open_keyframes) passed_.pop_front();
     graph_.MarginaliseOldest();
+    odometers_.pop_front();
   }
+}
+
+std::vector<Eigen::Vector2d> TrackMap::DrivenSince(double odometer) const {
+  std::vector<Eigen::Vector2d> driven;
+  for (const Passed& passed : passed_) {
+    if (passed.odometer >= odometer) driven.push_back(passed.position);
+  }
+  for (size_t i = 0; i < odometers_.size(); ++i) {
+    if (odometers_[i] >= odometer)
+      driven.push_back(graph_.pose(graph_.first_pose() + i).position());
+  }
+  return driven;
 }
 
 /// What the sightings of a known map say of the pose: an information update, landmarks being as
@@ -181,6 +207,8 @@ void TrackMap::Apply(const MergeRecord& merge) {
     table_.Merge(landmark, into);
   }
   closed_ = closed_ || merge.loop;
+  settles_in_ = kSettlesIn;
+  keyframes_since_full_ = 0;
   if (merge.by_shape && !merge.loop) gap_.reset();
 }
 
@@ -192,8 +220,8 @@ void TrackMap::Apply(const RemovalRecord& removal) {
 }
 
 bool TrackMap::SolveAfterKeyframe() {
-  if (!closed_ || ++keyframes_since_full_ < params_.full_solve_keyframes)
-    return graph_.SolveWindow();
+  const bool due = closed_ && ++keyframes_since_full_ >= params_.full_solve_keyframes;
+  if (!due && settles_in_ != kSettlesIn - 1) return graph_.SolveWindow();
   keyframes_since_full_ = 0;
   return graph_.SolveAll();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -27,12 +28,17 @@ struct LoopParams {
   double same_cone = 0.0;         // m: nearer landmarks that were never seen together are one, > 0
 };
 
+/// Poses that a keyframe marginalises at most: the lap that was mapped before the loop closed is
+/// soon caught up with, and no keyframe pays for it.
+inline constexpr int kMarginalisedAtOnce = 5;
+
 struct TrackMapParams {
   GraphParams graph;
   ConeFilter filter;
   double keyframe_distance = 0.0;   // m, > 0
   double keyframe_angle = 0.0;      // rad, > 0
   size_t max_keyframes = 0;         // more are marginalised, > graph.window_poses
+  size_t max_open_keyframes = 0;    // the same until the loop is closed, >= max_keyframes
   size_t full_solve_keyframes = 0;  // between solves of everything once the loop is closed, > 0
   size_t max_landmarks = 0;         // > 0
   int min_sightings = 0;  // keyframes that must have seen a cone before it is published, > 0
@@ -76,12 +82,22 @@ class TrackMap {
   Pose2 last_pose() const { return graph_.newest_pose(); }
   const Eigen::Matrix3d& last_covariance() const { return covariance_; }
   bool loop_closed() const { return closed_; }
+  /// False for the two keyframes after a merge, in which what it changed is solved for.
+  bool settled() const { return settles_in_ == 0; }
   double odometer() const { return odometer_; }
   /// Every cone seen often enough, by rising id.
   std::vector<GlobalCone> Cones() const;
   const PoseLandmarkGraph& graph() const { return graph_; }
+  /// Where the car was since this odometer reading: positions of keyframes in driving order, no
+  /// more than the newest `max_open_keyframes` of those that left the graph.
+  std::vector<Eigen::Vector2d> DrivenSince(double odometer) const;
 
  private:
+  struct Passed {
+    Eigen::Vector2d position;
+    double odometer;
+  };
+  void BoundGraph();
   /// A motion across which landmarks are not known again but by their shape: of two epochs of the
   /// local map with too little between them.
   struct Gap {
@@ -125,9 +141,12 @@ class TrackMap {
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  // of the newest pose, map
   std::vector<Eigen::Matrix2d> covariances_;              // of landmarks, at the last full solve
   double odometer_ = 0.0;
+  std::deque<double> odometers_;  // at each pose of the graph
+  std::deque<Passed> passed_;     // poses that left it
   std::optional<Gap> gap_;
   bool closed_ = false;
   size_t keyframes_since_full_ = 0;
+  int settles_in_ = 0;  // keyframes
 };
 
 }  // namespace hairpin

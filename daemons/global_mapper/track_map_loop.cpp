@@ -93,7 +93,7 @@ std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
 
 /// The cones seen since the gap among those seen before it, the nearest ones of each.
 std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime) const {
-  const Pose2 after = graph_.pose(gap_->pose);
+  const Pose2 after = graph_.pose(std::max(gap_->pose, graph_.first_pose()));
   std::vector<int64_t> recent;
   std::vector<int64_t> old;
   const auto distance = [&](int64_t l) {
@@ -136,7 +136,7 @@ std::optional<MergeRecord> TrackMap::FindDoubles(int64_t utime) const {
       if (gone[a] || gone[b] || !landmarks[a].alive || !landmarks[b].alive) continue;
       if ((graph_.landmark(a) - graph_.landmark(b)).norm() > params_.loop.same_cone) continue;
       if (!AreCompatible(landmarks[a].colour(), landmarks[b].colour())) continue;
-      if (graph_.SeenTogether(a, b)) continue;
+      if (graph_.MayHaveBeenSeenTogether(a, b)) continue;
       gone[b] = true;
       merge.pairs.emplace_back(static_cast<int64_t>(b), static_cast<int64_t>(a));
     }
@@ -172,10 +172,8 @@ bool TrackMap::TryToMerge(const MergeRecord& merge, Step& step) {
   step.records.emplace_back(merge);
   if (const auto doubles = FindDoubles(last_->utime)) {
     Apply(*doubles);
-    graph_.SolveAll();
     step.records.emplace_back(*doubles);
   }
-  Settle();
   last_->T_map_base = last_pose();
   return true;
 }

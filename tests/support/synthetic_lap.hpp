@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <vector>
 
 #include "daemons/global_mapper/pose_landmark_graph.hpp"
+#include "daemons/global_mapper/track_map.hpp"
 
 namespace hairpin {
 
@@ -105,8 +107,8 @@ class SyntheticLapDriver {
   explicit SyntheticLapDriver(const GraphParams& params, const Pose2& start)
       : graph_(params, start), landmark_of_(SyntheticLap::kCones, kNone) {}
 
-  void Add(const SyntheticLap::Step& step, bool first) {
-    if (!first) graph_.AddPose(step.odometry);
+  void Add(const SyntheticLap::Step& step) {
+    if (num_steps_++ > 0) graph_.AddPose(step.odometry);
     for (const auto& sighting : step.sightings) {
       size_t& landmark = landmark_of_[sighting.cone];
       if (landmark == kNone)
@@ -114,13 +116,28 @@ class SyntheticLapDriver {
       graph_.AddSighting(landmark, sighting.measurement);
     }
   }
+  /// Adds a step and solves as TrackMap does: a window each, everything where the loop closes and
+  /// each `full_solve_keyframes` from then on, the oldest marginalised beyond `max_keyframes`.
+  /// Returns false where the solver failed.
+  bool Drive(const SyntheticLap::Step& step, size_t max_keyframes, size_t full_solve_keyframes) {
+    Add(step);
+    const bool closed = num_steps_ > SyntheticLap::kPoses;
+    const size_t since = num_steps_ - SyntheticLap::kPoses - 1;
+    const bool all = closed && since % full_solve_keyframes == 0;
+    const bool solved = all ? graph_.SolveAll() : graph_.SolveWindow();
+    for (int i = 0; i < kMarginalisedAtOnce && closed && graph_.num_poses() > max_keyframes; ++i)
+      graph_.MarginaliseOldest();
+    return solved;
+  }
   PoseLandmarkGraph& graph() { return graph_; }
+  const PoseLandmarkGraph& graph() const { return graph_; }
   Eigen::Vector2d cone(size_t index) const { return graph_.landmark(landmark_of_[index]); }
 
  private:
   static constexpr size_t kNone = static_cast<size_t>(-1);
   PoseLandmarkGraph graph_;
   std::vector<size_t> landmark_of_;
+  size_t num_steps_ = 0;
 };
 
 }  // namespace hairpin

@@ -119,6 +119,29 @@ TEST(GlobalMapper, CountsLapsAndNeitherGrowsNorDoublesOverThem) {
   EXPECT_LT(WorstError(five, world), 0.5);
 }
 
+// The graph holds less than a lap then.
+TEST(GlobalMapper, TellsTheWayOfEachLap) {
+  LapWorld world({0.003, 0.0001});
+  GlobalMapper mapper(ShippedConfig().params);
+  double step = 0.0;
+  int laps = 0;
+  while (world.driven() < 3.0 * LapWorld::kLap + 20.0) {
+    const GlobalMapper::Outcome outcome = mapper.AddLocalMap(world.Drive(step));
+    step = kStep;
+    if (outcome.driven.empty()) continue;
+    EXPECT_EQ(outcome.estimate->laps, ++laps);
+    double length = 0.0;
+    for (size_t i = 1; i < outcome.driven.size(); ++i) {
+      const double keyframe = (outcome.driven[i] - outcome.driven[i - 1]).norm();
+      EXPECT_LT(keyframe, 2.0);
+      length += keyframe;
+    }
+    EXPECT_GT(length, LapWorld::kLap - 5.0);
+    EXPECT_LT(length, LapWorld::kLap + 50.0);
+  }
+  EXPECT_EQ(laps, 3);
+}
+
 TEST(GlobalMapper, GoesOnWhenTheLocalMapperBeginsANewEpoch) {
   LapWorld world({0.002, 0.0});
   GlobalMapper mapper(ShippedConfig().params);

@@ -26,11 +26,7 @@ double WorstDifference(const SyntheticLapDriver& a, const SyntheticLapDriver& b)
 
 SyntheticLapDriver Batch(const SyntheticLap& lap) {
   SyntheticLapDriver batch(Params(), lap.poses()[0]);
-  bool first = true;
-  for (const auto& step : lap.steps()) {
-    batch.Add(step, first);
-    first = false;
-  }
+  for (const auto& step : lap.steps()) batch.Add(step);
   EXPECT_TRUE(batch.graph().SolveAll());
   return batch;
 }
@@ -51,7 +47,7 @@ TEST(PoseLandmarkGraph, IsTheSameInTheEndWhenSolvedInWindowsAndMarginalised) {
   SyntheticLapDriver windows(Params(), lap.poses()[0]);
   size_t i = 0;
   for (const auto& step : lap.steps()) {
-    windows.Add(step, i == 0);
+    windows.Add(step);
     const bool closes = ++i % SyntheticLap::kPoses == SyntheticLap::kPoses - 1 || i == 625;
     ASSERT_TRUE(closes ? windows.graph().SolveAll() : windows.graph().SolveWindow());
     for (int k = 0; k < 2 && i > 700 && windows.graph().num_poses() > 300; ++k)
@@ -60,6 +56,30 @@ TEST(PoseLandmarkGraph, IsTheSameInTheEndWhenSolvedInWindowsAndMarginalised) {
   ASSERT_TRUE(windows.graph().SolveAll());
   EXPECT_EQ(windows.graph().num_poses(), 300u);
   EXPECT_LT(WorstDifference(windows, Batch(lap)), 0.01);
+}
+
+TEST(PoseLandmarkGraph, IsAfterTenLapsWithinACentimetreOfAllTenSolvedAtOnce) {
+  const SyntheticLap lap(3, 10);
+  SyntheticLapDriver windows(Params(), lap.poses()[0]);
+  for (const auto& step : lap.steps()) ASSERT_TRUE(windows.Drive(step, 100, 100));
+  EXPECT_LE(windows.graph().num_poses(), 100u);
+  SyntheticLapDriver batch = Batch(lap);
+  EXPECT_EQ(batch.graph().num_poses(), 6000u);
+  EXPECT_LT(WorstDifference(windows, batch), 0.01);
+}
+
+// Most landmarks are known to the prior alone then.
+TEST(PoseLandmarkGraph, LosesNothingOfASolutionByMarginalising) {
+  const SyntheticLap lap(4);
+  const SyntheticLapDriver before = Batch(lap);
+  SyntheticLapDriver after = before;
+  while (after.graph().num_poses() > 50) after.graph().MarginaliseOldest();
+  const auto whole = before.graph().LandmarkCovariances();
+  const auto marginal = after.graph().LandmarkCovariances();
+  for (size_t l = 0; l < whole.size(); ++l)
+    EXPECT_LT((marginal[l] - whole[l]).norm(), 1e-3 * whole[l].norm()) << l;
+  ASSERT_TRUE(after.graph().SolveAll());
+  EXPECT_LT(WorstDifference(before, after), 1e-4);
 }
 
 TEST(PoseLandmarkGraph, MergesALandmarkIntoAnotherEvenAfterMarginalising) {
