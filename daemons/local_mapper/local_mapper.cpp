@@ -65,8 +65,10 @@ std::string_view LocalMapper::AddVelocity(int64_t utime, const Twist2& velocity)
     whole_since_utime_ = utime;
     const double position_error = TrapezoidalError(gap, params_.gap_acceleration);
     const double yaw_error = TrapezoidalError(gap, params_.gap_yaw_acceleration);
-    map_.AddMotionUncertainty(*history_.At(utime), position_error * position_error,
-                              yaw_error * yaw_error);
+    map_.AddMotionUncertainty(T_local_odometry_ * *history_.At(utime),
+                              position_error * position_error, yaw_error * yaw_error);
+    hidden_variance_ +=
+        Eigen::Vector3d(position_error, position_error, yaw_error).cwiseAbs2().eval();
   }
   return {};
 }
@@ -75,13 +77,38 @@ void LocalMapper::Restart() {
   history_ = PoseHistory(params_.history);
   map_ = LocalMap(params_.map);
   epoch_ = 0;
+  T_local_odometry_ = {};
+  refined_utime_ = 0;
+  hidden_variance_.setZero();
+}
+
+/// Dead reckoning and, for a set newer than all before, what its cones say beyond it.
+Pose2 LocalMapper::PoseOf(const ObservationSet& set) {
+  const Pose2 T_odometry_base = *history_.At(set.utime);
+  const PoseRefinementParams& params = params_.map.refinement;
+  const Pose2 predicted = T_local_odometry_ * T_odometry_base;
+  if (!params.enabled() || set.utime <= refined_utime_) return predicted;
+  Pose2 pose = predicted;
+  if (refined_utime_ > 0) {
+    const double dt = SecondsBetween(refined_utime_, set.utime);
+    const double position = params.velocity_sigma * dt;
+    const double yaw = params.yaw_rate_sigma * dt;
+    const Eigen::Vector3d variance =
+        Eigen::Vector3d(position, position, yaw).cwiseAbs2() + hidden_variance_;
+    pose =
+        map_.Refine(set, predicted, variance.asDiagonal(), params_.trust.Of(mode_, set.pipeline));
+  }
+  T_local_odometry_ = pose * T_odometry_base.Inverse();
+  refined_utime_ = set.utime;
+  hidden_variance_.setZero();
+  return pose;
 }
 
 LocalMapper::Outcome LocalMapper::Observe(const ObservationSet& set) {
   if (!Uses(mode_, set.pipeline)) return {};
   const std::string_view why = WhyRefused(set);
   if (!why.empty()) return {std::nullopt, why};
-  const Pose2 T_local_base = *history_.At(set.utime);
+  const Pose2 T_local_base = PoseOf(set);
   if (epoch_ == 0) epoch_ = set.utime;
   std::set<int64_t>& used = used_utimes_[static_cast<size_t>(set.pipeline)];
   used.insert(set.utime);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "common/cone.hpp"
+#include "common/geometry.hpp"
+#include "daemons/local_mapper/association.hpp"
+
+namespace hairpin {
+
+/// How far VELOCITY may be off for longer than a set of observations: scale and misalignment of its
+/// sensors, stamps that differ. Zero: the pose is dead reckoning alone.
+struct PoseRefinementParams {
+  double velocity_sigma = 0.0;  // m/s, >= 0
+  double yaw_rate_sigma = 0.0;  // rad/s, >= 0
+  size_t min_pairs = 3;         // cones known again that a pose is refined by, >= 2
+
+  bool enabled() const { return velocity_sigma > 0.0 && yaw_rate_sigma > 0.0; }
+};
+
+/// The pose at which observations (base) fit known cones (local) best, near `predicted` as its
+/// covariance (of x, y, yaw; base) tells: maximum a posteriori by Gauss-Newton, with the
+/// association anew at each step. An error of the pose is common to all cones, which this takes out
+/// before they are filtered one by one. `position_weight` divides the observations' covariances.
+/// `predicted` comes back where fewer than `min_pairs` find a partner.
+Pose2 RefinePose(const std::vector<Gaussian2>& cones, const std::vector<ConeObservation>& seen,
+                 double position_weight, const Pose2& predicted, const Eigen::Matrix3d& covariance,
+                 const AssociationParams& association, size_t min_pairs);
+
+}  // namespace hairpin
