@@ -26,6 +26,7 @@ struct Trust {
   double position_weight =
       1.0;                     // > 0; divides the covariance of an observation that corrects a cone
   double colour_weight = 1.0;  // >= 0
+  bool refines_pose = false;   // by its cones: not where their errors are common, too
 };
 
 /// Hand-tuned growth of uncertainty by motion [paper III-C], per metre driven.

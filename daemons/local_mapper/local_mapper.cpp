@@ -87,7 +87,8 @@ Pose2 LocalMapper::PoseOf(const ObservationSet& set) {
   const Pose2 T_odometry_base = *history_.At(set.utime);
   const PoseRefinementParams& params = params_.map.refinement;
   const Pose2 predicted = T_local_odometry_ * T_odometry_base;
-  if (!params.enabled() || set.utime <= refined_utime_) return predicted;
+  const Trust& trust = params_.trust.Of(mode_, set.pipeline);
+  if (!trust.refines_pose || set.utime <= refined_utime_) return predicted;
   Pose2 pose = predicted;
   if (refined_utime_ > 0) {
     const double dt = SecondsBetween(refined_utime_, set.utime);
@@ -95,8 +96,7 @@ Pose2 LocalMapper::PoseOf(const ObservationSet& set) {
     const double yaw = params.yaw_rate_sigma * dt;
     const Eigen::Vector3d variance =
         Eigen::Vector3d(position, position, yaw).cwiseAbs2() + hidden_variance_;
-    pose =
-        map_.Refine(set, predicted, variance.asDiagonal(), params_.trust.Of(mode_, set.pipeline));
+    pose = map_.Refine(set, predicted, variance.asDiagonal(), trust);
   }
   T_local_odometry_ = pose * T_odometry_base.Inverse();
   refined_utime_ = set.utime;

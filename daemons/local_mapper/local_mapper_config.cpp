@@ -16,8 +16,8 @@ DetectorModel LoadDetector(const Config& config) {
 }
 
 Trust LoadTrust(const Config& config) {
-  return {config.Number("position_weight", {1e-6, 1e3}),
-          config.Number("colour_weight", {0.0, 1e3})};
+  return {config.Number("position_weight", {1e-6, 1e3}), config.Number("colour_weight", {0.0, 1e3}),
+          config.Flag("refines_pose")};
 }
 
 ExistenceParams LoadExistence(const Config& config) {
@@ -28,8 +28,8 @@ ExistenceParams LoadExistence(const Config& config) {
 }
 
 PoseRefinementParams LoadRefinement(const Config& config) {
-  return {config.Number("velocity_sigma_mps", {0.0, 10.0}),
-          config.Number("yaw_rate_sigma_radps", {0.0, 10.0}),
+  return {config.Number("velocity_sigma_mps", {1e-3, 10.0}),
+          config.Number("yaw_rate_sigma_radps", {1e-3, 10.0}),
           static_cast<size_t>(config.Integer("min_pairs", 2, 100))};
 }
 

@@ -7,6 +7,8 @@ namespace hairpin {
 namespace {
 
 constexpr int kIterations = 3;
+constexpr double kCauchyChi2 =
+    4.0;  // of a pair, whose weight is halved there: it may be a wrong one
 
 /// How a point of base moves in local, by the pose's (x, y, yaw) in base.
 Eigen::Matrix<double, 2, 3> PointJacobian(const Pose2& T_local_base, const Eigen::Vector2d& point) {
@@ -45,12 +47,14 @@ Pose2 RefinePose(const std::vector<Gaussian2>& cones, const std::vector<ConeObse
       ++pairs;
       const Gaussian2& cone = cones[*partner_of[s]];
       const auto J = PointJacobian(pose, seen[s].position);
-      const Eigen::Matrix2d weight =
+      const Eigen::Vector2d residual = cone.mean - observations[s].mean;
+      Eigen::Matrix2d weight =
           (cone.covariance + RotateCovariance(seen[s].covariance, pose.yaw) / position_weight +
            unmodelled)
               .inverse();
+      weight /= 1.0 + residual.dot(weight * residual) / kCauchyChi2;
       information += J.transpose() * weight * J;
-      gradient += J.transpose() * weight * (cone.mean - observations[s].mean);
+      gradient += J.transpose() * weight * residual;
     }
     if (pairs < min_pairs) return predicted;
     const Eigen::Vector3d step = information.ldlt().solve(gradient);

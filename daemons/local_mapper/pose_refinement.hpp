@@ -9,13 +9,11 @@
 namespace hairpin {
 
 /// How far VELOCITY may be off for longer than a set of observations: scale and misalignment of its
-/// sensors, stamps that differ. Zero: the pose is dead reckoning alone.
+/// sensors, stamps that differ.
 struct PoseRefinementParams {
-  double velocity_sigma = 0.0;  // m/s, >= 0
-  double yaw_rate_sigma = 0.0;  // rad/s, >= 0
+  double velocity_sigma = 1.0;  // m/s, > 0
+  double yaw_rate_sigma = 1.0;  // rad/s, > 0
   size_t min_pairs = 3;         // cones known again that a pose is refined by, >= 2
-
-  bool enabled() const { return velocity_sigma > 0.0 && yaw_rate_sigma > 0.0; }
 };
 
 /// The pose at which observations (base) fit known cones (local) best, near `predicted` as its
