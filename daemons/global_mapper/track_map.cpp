@@ -181,7 +181,7 @@ void TrackMap::Apply(const MergeRecord& merge) {
     table_.Merge(landmark, into);
   }
   closed_ = closed_ || merge.loop;
-  if (merge.by_shape && !merge.loop) gap_.reset();
+  if (merge.by_shape) gap_.reset();
 }
 
 void TrackMap::Apply(const RemovalRecord& removal) {

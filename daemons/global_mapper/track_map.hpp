@@ -14,6 +14,8 @@
 
 namespace hairpin {
 
+inline constexpr double kCrowded = 0.4;  // m: no two cones stand nearer, whatever their colours
+
 struct LoopParams {
   ConstellationParams constellation;
   ConstellationParams gap;        // across a gap of the odometry
@@ -113,6 +115,7 @@ class TrackMap {
   double CorrectionChi2(const Pose2& correction, const Pose2& pose,
                         const Eigen::Matrix3d& covariance) const;
   std::optional<MergeRecord> FindAcrossGap(int64_t utime) const;
+  bool ClosesLoop(const MergeRecord& merge, const Pose2& correction) const;
   bool FitsAfterSolve(const MergeRecord& merge) const;
   void TryToClose(Step& step);
   bool TryToMerge(const MergeRecord& merge, Step& step);

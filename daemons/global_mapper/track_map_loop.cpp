@@ -114,7 +114,19 @@ std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime) const {
   if (!match) return std::nullopt;
   MergeRecord merge{utime, false, true, {}};
   for (const auto& [from, to] : match->pairs) merge.pairs.emplace_back(recent[from], old[to]);
+  merge.loop = ClosesLoop(merge, match->T_to_from);
   return merge;
+}
+
+/// True if a gap is left at the start: enough of the cones were not seen for long.
+bool TrackMap::ClosesLoop(const MergeRecord& merge, const Pose2& correction) const {
+  if (closed_ || odometer_ < params_.loop.min_distance) return false;
+  const auto old = std::count_if(merge.pairs.begin(), merge.pairs.end(), [this](const auto& pair) {
+    const LandmarkInfo& info = table_.landmarks().at(static_cast<size_t>(pair.second));
+    return info.last_seen < gap_->odometer - params_.memory_distance;
+  });
+  return static_cast<size_t>(old) >= params_.loop.constellation.min_pairs &&
+         (correction * last_pose().position()).norm() <= params_.loop.search_radius;
 }
 
 bool TrackMap::FitsAfterSolve(const MergeRecord& merge) const {
@@ -134,8 +146,10 @@ std::optional<MergeRecord> TrackMap::FindDoubles(int64_t utime) const {
     for (size_t b = a + 1; b < gone.size(); ++b) {
       const auto& landmarks = table_.landmarks();
       if (gone[a] || gone[b] || !landmarks[a].alive || !landmarks[b].alive) continue;
-      if ((graph_.landmark(a) - graph_.landmark(b)).norm() > params_.loop.same_cone) continue;
-      if (!AreCompatible(landmarks[a].colour(), landmarks[b].colour())) continue;
+      const double distance = (graph_.landmark(a) - graph_.landmark(b)).norm();
+      if (distance > params_.loop.same_cone) continue;
+      if (!AreCompatible(landmarks[a].colour(), landmarks[b].colour()) && distance > kCrowded)
+        continue;
       if (graph_.SeenTogether(a, b)) continue;
       gone[b] = true;
       merge.pairs.emplace_back(static_cast<int64_t>(b), static_cast<int64_t>(a));
