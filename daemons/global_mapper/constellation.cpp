@@ -11,7 +11,7 @@ namespace hairpin {
 namespace {
 
 constexpr double kMinBaseline = 3.0;  // m: a nearer pair says little of the turn
-constexpr size_t kMaxPoints = 40;     // bounds the work; the first ones count
+constexpr size_t kMaxPoints = 60;     // bounds the work; the first ones count
 
 constexpr int kRefinements = 3;
 
@@ -160,9 +160,11 @@ class Search {
            (motion * centre_ - guess_ * centre_).norm() <= params_.max_translation;
   }
 
-  /// True if half the points wanted come near any: most motions can be passed over for little.
+  /// True if half the points wanted, and one beyond the pair itself, come near any: most motions
+  /// can be passed over for little.
   bool IsPromising(const Pose2& motion) const {
     const double tolerance = params_.tolerance;
+    const size_t wanted = std::max<size_t>(3, (params_.min_pairs + 1) / 2);
     size_t near = 0;
     for (const ConstellationPoint& point : from_) {
       const Eigen::Vector2d position = motion * point.position;
@@ -170,7 +172,7 @@ class Search {
                                     [](const auto& a, double x) { return a.x() < x; });
       for (; other != by_x_.end() && other->x() < position.x() + tolerance; ++other) {
         if (std::abs(other->y() - position.y()) >= tolerance) continue;
-        if (2 * ++near >= params_.min_pairs) return true;
+        if (++near >= wanted) return true;
         break;
       }
     }

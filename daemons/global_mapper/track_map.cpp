@@ -99,7 +99,8 @@ TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion,
     Apply(*removal);
     step.records.emplace_back(*removal);
   }
-  TryToClose(step);
+  // A whole map is the last one before the next gap.
+  TryToClose(whole, step);
   return step;
 }
 

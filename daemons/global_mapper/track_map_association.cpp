@@ -11,9 +11,7 @@ namespace {
 
 /// Enough to be looked at across a gap, where few cones are seen from both sides: what is left
 /// alone there is dropped once passed.
-bool IsSeenAgain(const LocalMapCone& cone, const ConeFilter& filter) {
-  return cone.existence >= filter.min_existence && cone.num_observations >= 2;
-}
+bool IsBelieved(const LocalMapCone& cone) { return cone.existence > 0.5; }
 
 }  // namespace
 
@@ -59,7 +57,7 @@ std::vector<SightingRecord> TrackMap::Associate(const LocalMapInput& map, const 
   std::vector<std::pair<const LocalMapCone*, int64_t>> sightings;
   std::vector<const LocalMapCone*> open;
   for (const LocalMapCone& cone : map.cones) {
-    const bool far_too = ((whole || gap_) && IsSeenAgain(cone, params_.filter)) ||
+    const bool far_too = ((whole || gap_) && IsBelieved(cone)) ||
                          (cone.seen_meanwhile && params_.filter.IsCertain(cone));
     if (!far_too && !params_.filter.Accepts(cone, map.T_local_base)) continue;
     if (const auto landmark = table_.Find(cone.id)) {

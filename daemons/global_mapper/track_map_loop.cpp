@@ -14,6 +14,9 @@ constexpr double kPairOdds = 3.0;  // logarithm of the odds that one more pair i
 // wheel that slips or a biased gyro makes more of it than any covariance told.
 constexpr double kDriftFreedom = 4.0;
 constexpr Eigen::Index kPoseSize = 3;
+constexpr size_t kMaxAfterGap = 25;      // cones since a gap that are looked for before it
+constexpr size_t kMinConstellation = 3;  // two cones fit anywhere
+constexpr double kLastChance = 0.9;      // of memory_distance driven since a gap
 
 /// How improbable a drift is, in pairs: less the logarithm of its density against that of none.
 double DriftPenalty(double chi2) {
@@ -91,8 +94,9 @@ std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
   return merge;
 }
 
-/// The cones seen since the gap among those seen before it, the nearest ones of each.
-std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime) const {
+/// The cones seen since the gap among those seen before it, the nearest ones of each. At the last
+/// chance a few that fit will do: without them nothing but a guess is left.
+std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime, bool last_chance) const {
   const Pose2 after = graph_.pose(gap_->pose);
   std::vector<int64_t> recent;
   std::vector<int64_t> old;
@@ -108,8 +112,14 @@ std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime) const {
     std::stable_sort(landmarks->begin(), landmarks->end(),
                      [&](int64_t x, int64_t y) { return distance(x) < distance(y); });
   }
+  recent.resize(std::min(recent.size(), kMaxAfterGap));
+  ConstellationParams params = params_.loop.gap;
+  if (last_chance) {
+    params.min_pairs = kMinConstellation;
+    params.min_lead = 1;
+  }
   const auto match = MatchConstellation(
-      Points(recent), Points(old), {}, params_.loop.gap,
+      Points(recent), Points(old), {}, params,
       [&](const Pose2& T) { return DriftPenalty(CorrectionChi2(T, after, gap_->covariance)); });
   if (!match) return std::nullopt;
   MergeRecord merge{utime, false, true, {}};
@@ -165,9 +175,10 @@ bool TrackMap::SolveMerged(const MergeRecord& merge) {
   return graph_.SolveAll();
 }
 
-void TrackMap::TryToClose(Step& step) {
+void TrackMap::TryToClose(bool last_chance, Step& step) {
   if (gap_) {
-    if (const auto merge = FindAcrossGap(last_->utime)) TryToMerge(*merge, step);
+    last_chance = last_chance || odometer_ - gap_->odometer > kLastChance * params_.memory_distance;
+    if (const auto merge = FindAcrossGap(last_->utime, last_chance)) TryToMerge(*merge, step);
     return;
   }
   if (closed_ || odometer_ < params_.loop.min_distance) return;
