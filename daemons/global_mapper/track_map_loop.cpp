@@ -16,7 +16,7 @@ constexpr double kDriftFreedom = 4.0;
 constexpr Eigen::Index kPoseSize = 3;
 constexpr size_t kMaxAfterGap = 25;      // cones since a gap that are looked for before it
 constexpr size_t kMinConstellation = 3;  // two cones fit anywhere
-constexpr double kLastChance = 0.9;      // of memory_distance driven since a gap
+constexpr double kLastChance = 0.4;      // of memory_distance driven since a gap
 
 /// How improbable a drift is, in pairs: less the logarithm of its density against that of none.
 double DriftPenalty(double chi2) {

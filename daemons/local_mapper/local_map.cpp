@@ -42,6 +42,7 @@ void LocalMapParams::Validate() const {
   Require(odometry.yaw_sigma >= 0.0, "odometry yaw_sigma must be >= 0");
   Require(refinement.velocity_sigma > 0.0, "velocity_sigma must be > 0");
   Require(refinement.yaw_rate_sigma > 0.0, "yaw_rate_sigma must be > 0");
+  Require(refinement.stamp_sigma >= 0.0, "stamp_sigma must be >= 0");
   Require(refinement.min_pairs >= 2, "min_pairs must be >= 2");
   Require(unknown_colour_weight > 0.0 && unknown_colour_weight <= 1.0,
           "unknown_colour_weight must be in (0, 1]");

@@ -61,6 +61,7 @@ std::string_view LocalMapper::AddVelocity(int64_t utime, const Twist2& velocity)
     whole_since_utime_ = utime;
   }
   if (!history_.Add(utime, velocity)) return "time does not increase";
+  velocity_ = velocity;
   if (gap > params_.velocity_deadline && gap <= params_.max_velocity_gap) {
     whole_since_utime_ = utime;
     const double position_error = TrapezoidalError(gap, params_.gap_acceleration);
@@ -91,15 +92,16 @@ Pose2 LocalMapper::PoseOf(const ObservationSet& set) {
   if (!trust.refines_pose || set.utime <= refined_utime_) return predicted;
   Pose2 pose = predicted;
   if (refined_utime_ > 0) {
-    const double dt = SecondsBetween(refined_utime_, set.utime);
-    const double position = params.velocity_sigma * dt;
-    const double yaw = params.yaw_rate_sigma * dt;
-    const Eigen::Vector3d variance =
-        Eigen::Vector3d(position, position, yaw).cwiseAbs2() + hidden_variance_;
-    pose = map_.Refine(set, predicted, variance.asDiagonal(), trust);
+    const Twist2 change{velocity_.vx - refined_velocity_.vx, velocity_.vy - refined_velocity_.vy,
+                        velocity_.yaw_rate - refined_velocity_.yaw_rate};
+    Eigen::Matrix3d covariance =
+        MotionCovariance(params, SecondsBetween(refined_utime_, set.utime), change);
+    covariance.diagonal() += hidden_variance_;
+    pose = map_.Refine(set, predicted, covariance, trust);
   }
   T_local_odometry_ = pose * T_odometry_base.Inverse();
   refined_utime_ = set.utime;
+  refined_velocity_ = velocity_;
   hidden_variance_.setZero();
   return pose;
 }

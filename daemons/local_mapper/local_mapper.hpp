@@ -91,6 +91,8 @@ class LocalMapper {
   int64_t epoch_ = 0;
   Pose2 T_local_odometry_;     // what cones said of the pose so far, beyond the history's
   int64_t refined_utime_ = 0;  // of the newest set that the pose was refined by, 0: none
+  Twist2 velocity_;            // newest
+  Twist2 refined_velocity_;    // newest at that time
   Eigen::Vector3d hidden_variance_ = Eigen::Vector3d::Zero();  // by gaps since, of (x, y, yaw)
   std::array<std::set<int64_t>, kNumPipelines> used_utimes_;   // within the history, by Pipeline
 };

@@ -30,6 +30,7 @@ ExistenceParams LoadExistence(const Config& config) {
 PoseRefinementParams LoadRefinement(const Config& config) {
   return {config.Number("velocity_sigma_mps", {1e-3, 10.0}),
           config.Number("yaw_rate_sigma_radps", {1e-3, 10.0}),
+          config.Number("stamp_sigma_s", {0.0, 1.0}),
           static_cast<size_t>(config.Integer("min_pairs", 2, 100))};
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <cmath>
 
 namespace hairpin {
 namespace {
@@ -18,6 +19,15 @@ Eigen::Matrix<double, 2, 3> PointJacobian(const Pose2& T_local_base, const Eigen
 }
 
 }  // namespace
+
+Eigen::Matrix3d MotionCovariance(const PoseRefinementParams& params, double duration,
+                                 const Twist2& change) {
+  const double position = std::hypot(params.velocity_sigma * duration,
+                                     params.stamp_sigma * std::hypot(change.vx, change.vy));
+  const double yaw =
+      std::hypot(params.yaw_rate_sigma * duration, params.stamp_sigma * change.yaw_rate);
+  return Eigen::Vector3d(position, position, yaw).cwiseAbs2().asDiagonal();
+}
 
 Pose2 RefinePose(const std::vector<Gaussian2>& cones, const std::vector<ConeObservation>& seen,
                  double position_weight, const Pose2& predicted, const Eigen::Matrix3d& covariance,

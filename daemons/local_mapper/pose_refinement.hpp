@@ -13,8 +13,14 @@ namespace hairpin {
 struct PoseRefinementParams {
   double velocity_sigma = 1.0;  // m/s, > 0
   double yaw_rate_sigma = 1.0;  // rad/s, > 0
+  double stamp_sigma = 0.0;     // s, >= 0: of VELOCITY's stamps against those of the observations
   size_t min_pairs = 3;         // cones known again that a pose is refined by, >= 2
 };
+
+/// What `params` allow a motion to be off: covariance of (x, y, yaw), base. `change`: of the
+/// velocity meanwhile, which a delay makes an error of.
+Eigen::Matrix3d MotionCovariance(const PoseRefinementParams& params, double duration,
+                                 const Twist2& change);
 
 /// The pose at which observations (base) fit known cones (local) best, near `predicted` as its
 /// covariance (of x, y, yaw; base) tells: maximum a posteriori by Gauss-Newton, with the
