@@ -227,7 +227,7 @@ Svg DrawTrack(const RunLog& log, const nlohmann::json& report) {
   DrawMappedCones(log, view, svg);
   if (log.truth_track) DrawTrueCones(*log.truth_track, view, svg);
   DrawMishaps(log, view, svg);
-  DrawScaleBar(view, view.height() - 22.0, svg);
+  DrawScaleBar(view, view.height() - 44.0, svg);  // above the legend
   DrawLegend(view.height() - 18.0, !log.race_lines.empty(), svg);
   return svg;
 }

@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <thread>
 
 #include "common/can/socketcan_port.hpp"
@@ -32,6 +33,7 @@ namespace {
 constexpr int kBootPatienceMs = 180'000;
 constexpr int64_t kStart = 1'700'000'000'000'000;
 constexpr int64_t kTick = 10'000;
+constexpr int64_t kStateTimeout = 150'000;  // three periods of a state of the car
 
 std::string InitScript(const std::string& test) {
   return R"(#!/bin/sh
@@ -121,7 +123,13 @@ class SocketCan : public testing::Test {
       car_port_->Send(frames);
       sent_ += static_cast<int64_t>(frames.size());
     }
-    while (const auto frame = port_->Receive()) Count(gateway_.OnFrame(*frame));
+    while (const auto frame = port_->Receive()) {
+      const auto state = state_heard_.find(frame->frame.id);
+      if (state != state_heard_.end()) state->second = ticks_;
+      Count(gateway_.OnFrame(*frame));
+    }
+    for (const auto& [id, heard] : state_heard_)
+      longest_silence_ = std::max(longest_silence_, (ticks_ - heard) * kTick);
     if (stack_talks_) Answer();
     gateway_.OnBus(port_->state());
     port_->Send(gateway_.Due(clock_.NowMicros()));
@@ -160,6 +168,10 @@ class SocketCan : public testing::Test {
   int64_t now_ = kStart;
   int64_t sent_ = 0;
   int ticks_ = -1;
+  // Tick at which each state of the car was last heard, and the longest that one was not [us].
+  std::map<uint32_t, int> state_heard_{
+      {dbc::VehicleStatus::kId, -1}, {dbc::ResStatus::kId, -1}, {dbc::Brakes::kId, -1}};
+  int64_t longest_silence_ = 0;
   std::vector<CanFrame> torques_;  // all that came out
   int64_t imus_ = 0;
   int64_t motors_ = 0;
@@ -366,6 +378,12 @@ TEST_F(DISABLED_SocketCan, DrivesOnWith5PercentOfTheFramesLost) {
   EXPECT_GT(lost, 0.03);
   EXPECT_LT(lost, 0.07);
   EXPECT_GT(imus_, kTicks * 85 / 100) << "of two frames each";
+  // Which frames are lost is the kernel's dice: three of one state in a row are one run in twelve,
+  // and then the car is to stop [FAULTS 30].
+  if (longest_silence_ > kStateTimeout) {
+    EXPECT_NE(Emergency().find("has ceased"), std::string::npos) << Emergency();
+    return;
+  }
   EXPECT_EQ(Emergency(), "");
   EXPECT_EQ(gateway_.supervision().stop(), "");
   EXPECT_NEAR(car_.front.left_nm, 20.0, 0.02);

@@ -64,10 +64,22 @@ systemctl reset-failed $unit
 systemctl start $unit
 check "a mended config runs" '[[ $(systemctl show -P ActiveState $unit) == active ]]'
 
-/mnt/hairpin-race --attach --speed 0 --config-dir /mnt/config --program-dir /mnt --logs-dir /mnt --out /mnt/run > /mnt/race.txt 2>&1
+drive() {  # OPTION...: the simulator with the installed daemons
+  /mnt/hairpin-race --attach --speed 0 --config-dir /mnt/config --program-dir /mnt --logs-dir /mnt --out /mnt/run "$@" > /mnt/race.txt 2>&1
+}
+drive
 code=$?
 check "the simulator drives a lap with the installed daemons" '[[ $code == 0 ]]' "$(tail -n 20 /mnt/race.txt)"
+map=/var/lib/hairpin/map.yaml
+check "the map of the track is kept" '[[ $(grep -c colour: $map) -gt 100 ]]' "$(ls -l /var/lib/hairpin)"
 check "the log of every message is written" '[[ $(stat -c %s /var/log/hairpin/car.lcmlog.0) -gt 1000000 ]]'
+
+systemctl restart hairpin.target
+sleep 2
+drive --mission trackdrive --map $map --seed 2
+code=$?
+check "the next start races ten laps on it" '[[ $code == 0 ]]' "$(tail -n 20 /mnt/race.txt)"
+sed -n 's/^  lap time  */figure trackdrive /p' /mnt/race.txt
 
 systemctl stop hairpin.target
 sleep 1

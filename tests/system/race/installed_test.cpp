@@ -72,7 +72,7 @@ TEST(InstalledPackage, KeepsTheCarRunningUnderSystemd) {
   const TemporaryFolder folder;
   fs::copy_file(Package(), folder.File("hairpin.deb"));
   Fill(folder, "installed_check.sh");
-  ExpectChecks(folder, "container.sh", kPatienceMs, 25);
+  ExpectChecks(folder, "container.sh", kPatienceMs, 27);
 }
 
 // The package's files over the guest's root, with what such a slow machine needs otherwise.
