@@ -11,7 +11,7 @@ namespace hairpin {
 namespace {
 
 constexpr double kMinBaseline = 3.0;  // m: a nearer pair says little of the turn
-constexpr size_t kMaxPoints = 60;     // bounds the work; the first ones count
+constexpr size_t kMaxPoints = 40;     // bounds the work; the first ones count
 
 constexpr int kRefinements = 3;
 
