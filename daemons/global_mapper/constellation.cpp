@@ -29,6 +29,11 @@ Eigen::Vector2d Centre(const Points& points) {
   return sum / static_cast<double>(points.size());
 }
 
+double WeightOf(const ConstellationPoint& a, const ConstellationPoint& b,
+                const ConstellationParams& params) {
+  return AreCompatible(a.colour, b.colour) ? 1.0 : params.contradiction_weight;
+}
+
 /// T that takes a pair to another one, midpoint to midpoint.
 Pose2 MotionOfPair(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p,
                    const Eigen::Vector2d& q) {
@@ -39,9 +44,10 @@ Pose2 MotionOfPair(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eig
   return {shift.x(), shift.y(), turn.yaw};
 }
 
-/// Nearest compatible partners within the tolerance, nearest first, each point once.
+/// Nearest partners within the tolerance, nearest first, each point once. The score is without any
+/// penalty.
 ConstellationMatch Pair(const Points& from, const Points& to, const Pose2& T_to_from,
-                        double tolerance) {
+                        const ConstellationParams& params) {
   struct Candidate {
     double distance;
     size_t from;
@@ -52,7 +58,7 @@ ConstellationMatch Pair(const Points& from, const Points& to, const Pose2& T_to_
     const Eigen::Vector2d position = T_to_from * from[i].position;
     for (size_t j = 0; j < to.size(); ++j) {
       const double distance = (position - to[j].position).norm();
-      if (distance < tolerance && AreCompatible(from[i].colour, to[j].colour))
+      if (distance < params.tolerance && WeightOf(from[i], to[j], params) > 0.0)
         candidates.push_back({distance, i, j});
     }
   }
@@ -68,6 +74,8 @@ ConstellationMatch Pair(const Points& from, const Points& to, const Pose2& T_to_
     from_taken[candidate.from] = to_taken[candidate.to] = true;
     match.pairs.emplace_back(candidate.from, candidate.to);
     squares += candidate.distance * candidate.distance;
+    match.score += WeightOf(from[candidate.from], to[candidate.to], params) *
+                   (1.0 - std::pow(candidate.distance / params.tolerance, 2));
   }
   if (!match.pairs.empty())
     match.rmse = std::sqrt(squares / static_cast<double>(match.pairs.size()));
@@ -134,9 +142,12 @@ class Search {
     const double baseline = (b.position - a.position).norm();
     if (baseline < kMinBaseline) return;
     for (const ConstellationPoint& p : to_) {
-      if (!AreCompatible(a.colour, p.colour)) continue;
+      const double weight = WeightOf(a, p, params_);
+      if (weight <= 0.0) continue;
       for (const ConstellationPoint& q : to_) {
-        if (&p == &q || !AreCompatible(b.colour, q.colour)) continue;
+        // One of the two at least is a pair without contradiction.
+        if (&p == &q || std::max(weight, WeightOf(b, q, params_)) < 1.0) continue;
+        if (WeightOf(b, q, params_) <= 0.0) continue;
         if (std::abs((q.position - p.position).norm() - baseline) > params_.tolerance) continue;
         const Pose2 motion = MotionOfPair(a.position, b.position, p.position, q.position);
         if (IsWithinBounds(motion) && IsPromising(motion)) Consider(motion);
@@ -149,9 +160,11 @@ class Search {
            (motion * centre_ - guess_ * centre_).norm() <= params_.max_translation;
   }
 
-  /// True if half the points wanted come near any: most motions can be passed over for little.
+  /// True if half the points wanted, and one beyond the pair itself, come near any: most motions
+  /// can be passed over for little.
   bool IsPromising(const Pose2& motion) const {
     const double tolerance = params_.tolerance;
+    const size_t wanted = std::max<size_t>(3, (params_.min_pairs + 1) / 2);
     size_t near = 0;
     for (const ConstellationPoint& point : from_) {
       const Eigen::Vector2d position = motion * point.position;
@@ -159,7 +172,7 @@ class Search {
                                     [](const auto& a, double x) { return a.x() < x; });
       for (; other != by_x_.end() && other->x() < position.x() + tolerance; ++other) {
         if (std::abs(other->y() - position.y()) >= tolerance) continue;
-        if (2 * ++near >= params_.min_pairs) return true;
+        if (++near >= wanted) return true;
         break;
       }
     }
@@ -167,12 +180,10 @@ class Search {
   }
 
   void Consider(const Pose2& motion) {
-    ConstellationMatch match = Pair(from_, to_, motion, params_.tolerance);
+    ConstellationMatch match = Pair(from_, to_, motion, params_);
     for (int i = 0; i < kRefinements && match.pairs.size() >= 2; ++i)
-      match = Pair(from_, to_, Align(from_, to_, match), params_.tolerance);
+      match = Pair(from_, to_, Align(from_, to_, match), params_);
     if (!IsWithinBounds(match.T_to_from)) return;
-    const double misfit = std::pow(match.rmse / params_.tolerance, 2);
-    match.score = static_cast<double>(match.pairs.size()) * (1.0 - misfit);
     if (penalty_) match.score -= penalty_(match.T_to_from);
     Remember(match);
     if (IsBetter(match, best_)) best_ = std::move(match);
@@ -218,6 +229,8 @@ void ConstellationParams::Validate() const {
   RequireGlobalMap(max_rotation > 0.0, "constellation max_rotation must be > 0");
   RequireGlobalMap(min_pairs >= 3, "constellation min_pairs must be >= 3");
   RequireGlobalMap(min_lead >= 1, "constellation min_lead must be >= 1");
+  RequireGlobalMap(contradiction_weight >= 0.0 && contradiction_weight <= 1.0,
+                   "constellation contradiction_weight must be in [0, 1]");
 }
 
 bool AreCompatible(ConeColour a, ConeColour b) {

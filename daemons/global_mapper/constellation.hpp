@@ -18,11 +18,12 @@ struct ConstellationPoint {
 };
 
 struct ConstellationParams {
-  double tolerance = 0.0;        // m between partners, > 0
-  double max_translation = 0.0;  // m of the points' centre from the guess, > 0
-  double max_rotation = 0.0;     // rad from the guess, > 0
-  size_t min_pairs = 0;          // >= 3
-  size_t min_lead = 0;           // pairs more than the next best place has, >= 1
+  double tolerance = 0.0;             // m between partners, > 0
+  double max_translation = 0.0;       // m of the points' centre from the guess, > 0
+  double max_rotation = 0.0;          // rad from the guess, > 0
+  size_t min_pairs = 0;               // >= 3
+  size_t min_lead = 0;                // pairs more than the next best place has, >= 1
+  double contradiction_weight = 0.0;  // of a pair whose colours contradict, 0 (none is) to 1
 
   /// Throws std::invalid_argument naming parameter, relation and bound.
   void Validate() const;
@@ -32,8 +33,9 @@ struct ConstellationMatch {
   Pose2 T_to_from;
   std::vector<std::pair<size_t, size_t>> pairs;  // (from, to), each point once
   double rmse = 0.0;                             // m
-  double score = 0.0;  // sum over the pairs of 1 - (distance / tolerance)^2, less the penalty [Torr
-                       // 2000, MSAC]
+  // Sum over the pairs of weight * (1 - (distance / tolerance)^2), less the penalty [Torr 2000,
+  // MSAC].
+  double score = 0.0;
 };
 
 /// False for two colours that contradict each other; unknown contradicts none, and the two sizes of

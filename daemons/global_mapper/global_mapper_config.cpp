@@ -19,6 +19,7 @@ ConstellationParams LoadConstellation(const Config& config) {
   params.max_rotation = config.Number("max_rotation_rad", {0.01, 3.2});
   params.min_pairs = static_cast<size_t>(config.Integer("min_pairs", 3, 40));
   params.min_lead = static_cast<size_t>(config.Integer("min_lead", 1, 40));
+  params.contradiction_weight = config.Number("contradiction_weight", {0.0, 1.0});
   return params;
 }
 

@@ -103,7 +103,8 @@ TrackMap::Step TrackMap::Observe(const LocalMapInput& map, const Motion& motion,
     Apply(*removal);
     step.records.emplace_back(*removal);
   }
-  if (settled()) TryToClose(step);
+  // A whole map is the last one before the next gap.
+  if (settled() || whole) TryToClose(whole, step);
   return step;
 }
 
@@ -209,7 +210,7 @@ void TrackMap::Apply(const MergeRecord& merge) {
   closed_ = closed_ || merge.loop;
   settles_in_ = kSettlesIn;
   keyframes_since_full_ = 0;
-  if (merge.by_shape && !merge.loop) gap_.reset();
+  if (merge.by_shape) gap_.reset();
 }
 
 void TrackMap::Apply(const RemovalRecord& removal) {

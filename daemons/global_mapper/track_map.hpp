@@ -15,6 +15,8 @@
 
 namespace hairpin {
 
+inline constexpr double kCrowded = 0.4;  // m: no two cones stand nearer, whatever their colours
+
 struct LoopParams {
   ConstellationParams constellation;
   ConstellationParams gap;        // across a gap of the odometry
@@ -128,9 +130,10 @@ class TrackMap {
   bool IsExplained(const std::vector<int64_t>& recent, const ConstellationMatch& match) const;
   double CorrectionChi2(const Pose2& correction, const Pose2& pose,
                         const Eigen::Matrix3d& covariance) const;
-  std::optional<MergeRecord> FindAcrossGap(int64_t utime) const;
+  std::optional<MergeRecord> FindAcrossGap(int64_t utime, bool last_chance) const;
+  bool ClosesLoop(const MergeRecord& merge, const Pose2& correction) const;
   bool FitsAfterSolve(const MergeRecord& merge) const;
-  void TryToClose(Step& step);
+  void TryToClose(bool last_chance, Step& step);
   bool TryToMerge(const MergeRecord& merge, Step& step);
   bool SolveMerged(const MergeRecord& merge);
 

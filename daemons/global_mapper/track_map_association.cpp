@@ -9,7 +9,9 @@
 namespace hairpin {
 namespace {
 
-constexpr double kCrowded = 0.4;  // m: no two cones stand nearer
+/// Enough to be looked at across a gap, where few cones are seen from both sides: what is left
+/// alone there is dropped once passed.
+bool IsBelieved(const LocalMapCone& cone) { return cone.existence > 0.5; }
 
 }  // namespace
 
@@ -55,7 +57,8 @@ std::vector<SightingRecord> TrackMap::Associate(const LocalMapInput& map, const 
   std::vector<std::pair<const LocalMapCone*, int64_t>> sightings;
   std::vector<const LocalMapCone*> open;
   for (const LocalMapCone& cone : map.cones) {
-    const bool far_too = (whole || gap_ || cone.seen_meanwhile) && params_.filter.IsCertain(cone);
+    const bool far_too = ((whole || gap_) && IsBelieved(cone)) ||
+                         (cone.seen_meanwhile && params_.filter.IsCertain(cone));
     if (!far_too && !params_.filter.Accepts(cone, map.T_local_base)) continue;
     if (const auto landmark = table_.Find(cone.id)) {
       sightings.emplace_back(&cone, *landmark);

@@ -14,6 +14,9 @@ constexpr double kPairOdds = 3.0;  // logarithm of the odds that one more pair i
 // wheel that slips or a biased gyro makes more of it than any covariance told.
 constexpr double kDriftFreedom = 4.0;
 constexpr Eigen::Index kPoseSize = 3;
+constexpr size_t kMaxAfterGap = 25;      // cones since a gap that are looked for before it
+constexpr size_t kMinConstellation = 3;  // two cones fit anywhere
+constexpr double kLastChance = 0.4;      // of memory_distance driven since a gap
 
 /// How improbable a drift is, in pairs: less the logarithm of its density against that of none.
 double DriftPenalty(double chi2) {
@@ -91,8 +94,9 @@ std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
   return merge;
 }
 
-/// The cones seen since the gap among those seen before it, the nearest ones of each.
-std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime) const {
+/// The cones seen since the gap among those seen before it, the nearest ones of each. At the last
+/// chance a few that fit will do: without them nothing but a guess is left.
+std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime, bool last_chance) const {
   const Pose2 after = graph_.pose(std::max(gap_->pose, graph_.first_pose()));
   std::vector<int64_t> recent;
   std::vector<int64_t> old;
@@ -108,13 +112,31 @@ std::optional<MergeRecord> TrackMap::FindAcrossGap(int64_t utime) const {
     std::stable_sort(landmarks->begin(), landmarks->end(),
                      [&](int64_t x, int64_t y) { return distance(x) < distance(y); });
   }
+  recent.resize(std::min(recent.size(), kMaxAfterGap));
+  ConstellationParams params = params_.loop.gap;
+  if (last_chance) {
+    params.min_pairs = kMinConstellation;
+    params.min_lead = 1;
+  }
   const auto match = MatchConstellation(
-      Points(recent), Points(old), {}, params_.loop.gap,
+      Points(recent), Points(old), {}, params,
       [&](const Pose2& T) { return DriftPenalty(CorrectionChi2(T, after, gap_->covariance)); });
   if (!match) return std::nullopt;
   MergeRecord merge{utime, false, true, {}};
   for (const auto& [from, to] : match->pairs) merge.pairs.emplace_back(recent[from], old[to]);
+  merge.loop = ClosesLoop(merge, match->T_to_from);
   return merge;
+}
+
+/// True if a gap is left at the start: enough of the cones were not seen for long.
+bool TrackMap::ClosesLoop(const MergeRecord& merge, const Pose2& correction) const {
+  if (closed_ || odometer_ < params_.loop.min_distance) return false;
+  const auto old = std::count_if(merge.pairs.begin(), merge.pairs.end(), [this](const auto& pair) {
+    const LandmarkInfo& info = table_.landmarks().at(static_cast<size_t>(pair.second));
+    return info.last_seen < gap_->odometer - params_.memory_distance;
+  });
+  return static_cast<size_t>(old) >= params_.loop.constellation.min_pairs &&
+         (correction * last_pose().position()).norm() <= params_.loop.search_radius;
 }
 
 bool TrackMap::FitsAfterSolve(const MergeRecord& merge) const {
@@ -134,8 +156,10 @@ std::optional<MergeRecord> TrackMap::FindDoubles(int64_t utime) const {
     for (size_t b = a + 1; b < gone.size(); ++b) {
       const auto& landmarks = table_.landmarks();
       if (gone[a] || gone[b] || !landmarks[a].alive || !landmarks[b].alive) continue;
-      if ((graph_.landmark(a) - graph_.landmark(b)).norm() > params_.loop.same_cone) continue;
-      if (!AreCompatible(landmarks[a].colour(), landmarks[b].colour())) continue;
+      const double distance = (graph_.landmark(a) - graph_.landmark(b)).norm();
+      if (distance > params_.loop.same_cone) continue;
+      if (!AreCompatible(landmarks[a].colour(), landmarks[b].colour()) && distance > kCrowded)
+        continue;
       if (graph_.MayHaveBeenSeenTogether(a, b)) continue;
       gone[b] = true;
       merge.pairs.emplace_back(static_cast<int64_t>(b), static_cast<int64_t>(a));
@@ -151,9 +175,10 @@ bool TrackMap::SolveMerged(const MergeRecord& merge) {
   return graph_.SolveAll();
 }
 
-void TrackMap::TryToClose(Step& step) {
+void TrackMap::TryToClose(bool last_chance, Step& step) {
   if (gap_) {
-    if (const auto merge = FindAcrossGap(last_->utime)) TryToMerge(*merge, step);
+    last_chance = last_chance || odometer_ - gap_->odometer > kLastChance * params_.memory_distance;
+    if (const auto merge = FindAcrossGap(last_->utime, last_chance)) TryToMerge(*merge, step);
     return;
   }
   if (closed_ || odometer_ < params_.loop.min_distance) return;

@@ -40,6 +40,10 @@ void LocalMapParams::Validate() const {
   Require(min_cone_distance >= 0.0, "min_cone_distance must be >= 0");
   Require(odometry.position_sigma >= 0.0, "odometry position_sigma must be >= 0");
   Require(odometry.yaw_sigma >= 0.0, "odometry yaw_sigma must be >= 0");
+  Require(refinement.velocity_sigma > 0.0, "velocity_sigma must be > 0");
+  Require(refinement.yaw_rate_sigma > 0.0, "yaw_rate_sigma must be > 0");
+  Require(refinement.stamp_sigma >= 0.0, "stamp_sigma must be >= 0");
+  Require(refinement.min_pairs >= 2, "min_pairs must be >= 2");
   Require(unknown_colour_weight > 0.0 && unknown_colour_weight <= 1.0,
           "unknown_colour_weight must be in (0, 1]");
   Require(open_unit(existence.removed_below), "existence removed_below must be in (0, 1)");
@@ -117,12 +121,26 @@ void LocalMap::AddMotionUncertainty(const Pose2& T_local_base, double position_v
   }
 }
 
-std::vector<std::optional<size_t>> LocalMap::AssociateWithLandmarks(
-    const std::vector<Gaussian2>& observations_local) const {
+Pose2 LocalMap::Refine(const ObservationSet& set, const Pose2& predicted,
+                       const Eigen::Matrix3d& covariance, const Trust& trust) const {
+  std::vector<Gaussian2> sure;  // what was seen once only may be a phantom
+  for (const Landmark& landmark : landmarks_) {
+    if (landmark.num_observations > 1) sure.push_back(landmark.state);
+  }
+  return RefinePose(sure, set.cones, trust.position_weight, predicted, covariance,
+                    params_.association, params_.refinement.min_pairs);
+}
+
+std::vector<Gaussian2> LocalMap::States() const {
   std::vector<Gaussian2> states;
   states.reserve(landmarks_.size());
   for (const Landmark& landmark : landmarks_) states.push_back(landmark.state);
-  return Associate(states, observations_local, params_.association);
+  return states;
+}
+
+std::vector<std::optional<size_t>> LocalMap::AssociateWithLandmarks(
+    const std::vector<Gaussian2>& observations_local) const {
+  return Associate(States(), observations_local, params_.association);
 }
 
 bool LocalMap::IsNew(const Eigen::Vector2d& position) const {

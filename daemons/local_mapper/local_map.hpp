@@ -10,6 +10,7 @@
 #include "common/geometry.hpp"
 #include "daemons/local_mapper/association.hpp"
 #include "daemons/local_mapper/observation.hpp"
+#include "daemons/local_mapper/pose_refinement.hpp"
 #include "daemons/local_mapper/visibility.hpp"
 
 namespace hairpin {
@@ -25,6 +26,7 @@ struct Trust {
   double position_weight =
       1.0;                     // > 0; divides the covariance of an observation that corrects a cone
   double colour_weight = 1.0;  // >= 0
+  bool refines_pose = false;   // by its cones: not where their errors are common, too
 };
 
 /// Hand-tuned growth of uncertainty by motion [paper III-C], per metre driven.
@@ -44,6 +46,7 @@ struct ExistenceParams {
 
 struct LocalMapParams {
   AssociationParams association;
+  PoseRefinementParams refinement;
   double min_cone_distance = 0.0;  // m; no cone is added this near to another one
   OdometryNoise odometry;
   double unknown_colour_weight =
@@ -83,6 +86,10 @@ class LocalMap {
   /// order; the covariances grow by the motion since the newest one.
   void Update(const ObservationSet& set, const Pose2& T_local_base, const Trust& trust);
 
+  /// The pose of a set that comes next, by its cones: see RefinePose().
+  Pose2 Refine(const ObservationSet& set, const Pose2& predicted, const Eigen::Matrix3d& covariance,
+               const Trust& trust) const;
+
   /// Grows the covariance of every cone by an uncertain motion that ended at `T_local_base`:
   /// isotropic by the position's variance [m^2], tangential by range^2 * the yaw's variance
   /// [rad^2].
@@ -105,6 +112,7 @@ class LocalMap {
   };
 
   void Advance(int64_t utime, const Pose2& T_local_base);
+  std::vector<Gaussian2> States() const;
   std::vector<std::optional<size_t>> AssociateWithLandmarks(
       const std::vector<Gaussian2>& observations_local) const;
   bool IsNew(const Eigen::Vector2d& position) const;

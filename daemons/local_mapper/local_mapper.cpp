@@ -61,12 +61,15 @@ std::string_view LocalMapper::AddVelocity(int64_t utime, const Twist2& velocity)
     whole_since_utime_ = utime;
   }
   if (!history_.Add(utime, velocity)) return "time does not increase";
+  velocity_ = velocity;
   if (gap > params_.velocity_deadline && gap <= params_.max_velocity_gap) {
     whole_since_utime_ = utime;
     const double position_error = TrapezoidalError(gap, params_.gap_acceleration);
     const double yaw_error = TrapezoidalError(gap, params_.gap_yaw_acceleration);
-    map_.AddMotionUncertainty(*history_.At(utime), position_error * position_error,
-                              yaw_error * yaw_error);
+    map_.AddMotionUncertainty(T_local_odometry_ * *history_.At(utime),
+                              position_error * position_error, yaw_error * yaw_error);
+    hidden_variance_ +=
+        Eigen::Vector3d(position_error, position_error, yaw_error).cwiseAbs2().eval();
   }
   return {};
 }
@@ -75,13 +78,39 @@ void LocalMapper::Restart() {
   history_ = PoseHistory(params_.history);
   map_ = LocalMap(params_.map);
   epoch_ = 0;
+  T_local_odometry_ = {};
+  refined_utime_ = 0;
+  hidden_variance_.setZero();
+}
+
+/// Dead reckoning and, for a set newer than all before, what its cones say beyond it.
+Pose2 LocalMapper::PoseOf(const ObservationSet& set) {
+  const Pose2 T_odometry_base = *history_.At(set.utime);
+  const PoseRefinementParams& params = params_.map.refinement;
+  const Pose2 predicted = T_local_odometry_ * T_odometry_base;
+  const Trust& trust = params_.trust.Of(mode_, set.pipeline);
+  if (!trust.refines_pose || set.utime <= refined_utime_) return predicted;
+  Pose2 pose = predicted;
+  if (refined_utime_ > 0) {
+    const Twist2 change{velocity_.vx - refined_velocity_.vx, velocity_.vy - refined_velocity_.vy,
+                        velocity_.yaw_rate - refined_velocity_.yaw_rate};
+    Eigen::Matrix3d covariance =
+        MotionCovariance(params, SecondsBetween(refined_utime_, set.utime), change);
+    covariance.diagonal() += hidden_variance_;
+    pose = map_.Refine(set, predicted, covariance, trust);
+  }
+  T_local_odometry_ = pose * T_odometry_base.Inverse();
+  refined_utime_ = set.utime;
+  refined_velocity_ = velocity_;
+  hidden_variance_.setZero();
+  return pose;
 }
 
 LocalMapper::Outcome LocalMapper::Observe(const ObservationSet& set) {
   if (!Uses(mode_, set.pipeline)) return {};
   const std::string_view why = WhyRefused(set);
   if (!why.empty()) return {std::nullopt, why};
-  const Pose2 T_local_base = *history_.At(set.utime);
+  const Pose2 T_local_base = PoseOf(set);
   if (epoch_ == 0) epoch_ = set.utime;
   std::set<int64_t>& used = used_utimes_[static_cast<size_t>(set.pipeline)];
   used.insert(set.utime);

@@ -81,6 +81,7 @@ class LocalMapper {
   void Restart();
   std::string_view WhyRefused(const ObservationSet& set) const;
   bool SharesScan(const ObservationSet& set) const;
+  Pose2 PoseOf(const ObservationSet& set);
 
   LocalMapperParams params_;
   MapMode mode_ = MapMode::kUnknown;
@@ -88,7 +89,12 @@ class LocalMapper {
   LocalMap map_;
   int64_t whole_since_utime_ = 0;  // the history has no gap since
   int64_t epoch_ = 0;
-  std::array<std::set<int64_t>, kNumPipelines> used_utimes_;  // within the history, by Pipeline
+  Pose2 T_local_odometry_;     // what cones said of the pose so far, beyond the history's
+  int64_t refined_utime_ = 0;  // of the newest set that the pose was refined by, 0: none
+  Twist2 velocity_;            // newest
+  Twist2 refined_velocity_;    // newest at that time
+  Eigen::Vector3d hidden_variance_ = Eigen::Vector3d::Zero();  // by gaps since, of (x, y, yaw)
+  std::array<std::set<int64_t>, kNumPipelines> used_utimes_;   // within the history, by Pipeline
 };
 
 }  // namespace hairpin

@@ -16,8 +16,8 @@ DetectorModel LoadDetector(const Config& config) {
 }
 
 Trust LoadTrust(const Config& config) {
-  return {config.Number("position_weight", {1e-6, 1e3}),
-          config.Number("colour_weight", {0.0, 1e3})};
+  return {config.Number("position_weight", {1e-6, 1e3}), config.Number("colour_weight", {0.0, 1e3}),
+          config.Flag("refines_pose")};
 }
 
 ExistenceParams LoadExistence(const Config& config) {
@@ -27,10 +27,18 @@ ExistenceParams LoadExistence(const Config& config) {
           config.Number("max_credited_recall", kProbability)};
 }
 
+PoseRefinementParams LoadRefinement(const Config& config) {
+  return {config.Number("velocity_sigma_mps", {1e-3, 10.0}),
+          config.Number("yaw_rate_sigma_radps", {1e-3, 10.0}),
+          config.Number("stamp_sigma_s", {0.0, 1.0}),
+          static_cast<size_t>(config.Integer("min_pairs", 2, 100))};
+}
+
 LocalMapParams LoadMap(const Config& config) {
   LocalMapParams params;
   params.association.gate_chi2 = config.Number("gate_chi2", {0.1, 100.0});
   params.association.gate_sigma = config.Number("gate_sigma_m", {0.0, 1.0});
+  params.refinement = LoadRefinement(config.Section("refinement"));
   params.min_cone_distance = config.Number("min_cone_distance_m", {0.0, 5.0});
   params.odometry.position_sigma = config.Number("odometry_position_sigma_m_per_sqrt_m", kUnit);
   params.odometry.yaw_sigma = config.Number("odometry_yaw_sigma_rad_per_sqrt_m", kUnit);

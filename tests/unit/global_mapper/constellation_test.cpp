@@ -61,6 +61,22 @@ TEST(Constellation, WithTheColoursSwappedIsAnotherOne) {
   EXPECT_FALSE(MatchConstellation(swapped, Bend(), {}, Params()));
 }
 
+// A LiDAR's colours, where one cone is seen from afar and from near.
+TEST(Constellation, IsFoundThoughSomeColoursAreWrongWhereThoseCountLess) {
+  auto wrong = Bend();
+  wrong[4].colour = ConeColour::kYellow;
+  wrong[7].colour = ConeColour::kBlue;
+  ConstellationParams params = Params();
+  params.contradiction_weight = 0.5;
+  const Pose2 drift{5.0, -6.0, 0.1};
+  const auto match = MatchConstellation(Moved(wrong, drift), Bend(), {}, params);
+  ASSERT_TRUE(match);
+  EXPECT_EQ(match->pairs.size(), Bend().size());
+  EXPECT_NEAR(match->score, static_cast<double>(Bend().size()) - 1.0, 1e-6);
+  EXPECT_LT(MatchConstellation(Moved(wrong, drift), Bend(), {}, Params())->pairs.size(),
+            Bend().size());
+}
+
 TEST(Constellation, BeyondTheBoundsIsNotLookedFor) {
   EXPECT_FALSE(MatchConstellation(Moved(Bend(), {20.0, 0.0, 0.0}), Bend(), {}, Params()));
 }
