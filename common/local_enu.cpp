@@ -6,10 +6,14 @@
 
 namespace hairpin {
 
+bool IsPlaceOnEarth(const GeodeticPoint& point) {
+  return std::abs(point.latitude_deg) <= 90.0 && std::abs(point.longitude_deg) <= 180.0 &&
+         std::isfinite(point.height_m);
+}
+
 LocalEnu::LocalEnu(const GeodeticPoint& origin) : origin_(origin) {
-  const bool is_place = std::abs(origin.latitude_deg) <= 90.0 &&
-                        std::abs(origin.longitude_deg) <= 180.0 && std::isfinite(origin.height_m);
-  if (!is_place) throw std::invalid_argument("LocalEnu: the origin is no place on Earth");
+  if (!IsPlaceOnEarth(origin))
+    throw std::invalid_argument("LocalEnu: the origin is no place on Earth");
   plane_ = std::make_unique<GeographicLib::LocalCartesian>(origin.latitude_deg,
                                                            origin.longitude_deg, origin.height_m);
 }

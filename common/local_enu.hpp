@@ -16,6 +16,9 @@ struct GeodeticPoint {
   double height_m = 0.0;  // above the ellipsoid
 };
 
+/// True for a latitude within 90 and a longitude within 180 degrees, and a finite height.
+bool IsPlaceOnEarth(const GeodeticPoint& point);
+
 /// The tangent plane at an origin: x east, y north, z up [m]. Source: GeographicLib,
 /// LocalCartesian, exact to nanometres.
 class LocalEnu {

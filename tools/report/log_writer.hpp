@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/channels.hpp"
+
 namespace hairpin {
 
 /// Writes an LCM event log, which lcm-logplayer and LogReader read: the same calls make the same
@@ -24,6 +26,14 @@ class LogWriter {
   /// bounds (log_reader.hpp), std::logic_error after Close(), std::runtime_error where the disk is
   /// full.
   void Write(int64_t timestamp_us, std::string_view channel, const uint8_t* data, size_t size);
+
+  /// The same of a message.
+  template <class M>
+  void Write(int64_t timestamp_us, const Channel<M>& channel, const M& message) {
+    std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    Write(timestamp_us, channel.name, bytes.data(), bytes.size());
+  }
 
   /// Flushes and closes; a second call does nothing. Throws std::runtime_error where not everything
   /// could be written.

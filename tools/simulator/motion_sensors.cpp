@@ -116,7 +116,7 @@ ground_speed_t MotionSensors::GroundSpeed(int64_t utime, const VehicleState& sta
 gnss_t MotionSensors::Gnss(int64_t utime, const VehicleState& state, double duration) {
   gnss_t message{};
   message.utime = utime;
-  message.fix = gnss_t::FIX_DIFFERENTIAL;
+  message.fix = params_.gnss_fix;
   const Eigen::Vector2d position_map = state.T_map_base * car_.gnss_position;
   const Eigen::Vector2d velocity_map =
       state.T_map_base.rotation() * VelocityAt(state.velocity, car_.gnss_position);

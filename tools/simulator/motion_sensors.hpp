@@ -31,8 +31,9 @@ struct MotionSensorParams {
   double steering_offset_rad = 0.0;  // sigma, drawn once a run
   double ground_speed_noise_mps = 0.0;
   double ground_speed_scale = 0.0;
-  double ground_speed_misalignment_rad = 0.0;  // sigma of the mount's yaw error, drawn once a run
-  double gnss_position_bias_m = 0.0;           // per axis, wandering
+  double ground_speed_misalignment_rad = 0.0;   // sigma of the mount's yaw error, drawn once a run
+  int32_t gnss_fix = gnss_t::FIX_DIFFERENTIAL;  // as the receiver calls its solution
+  double gnss_position_bias_m = 0.0;            // per axis, wandering
   double gnss_position_bias_time_s = 0.0;
   double gnss_position_noise_m = 0.0;
   double gnss_velocity_noise_mps = 0.0;

@@ -23,7 +23,7 @@ std::string Seconds(double value) {
 }  // namespace
 
 Referee::Referee(const RefereeParams& params, const Car& car, const Track& track)
-    : params_(params), car_(car), track_(track), area_(track) {
+    : params_(params), car_(car), area_(track), lines_(track) {
   RequireWithin("laps", params.laps, 1, 1000);
   RequirePositive("start_limit", params.start_limit_s);
   RequirePositive("time_limit_per_lap", params.time_limit_per_lap_s);
@@ -54,20 +54,9 @@ void Referee::Judge(const RefereeInput& input, const VehicleState& state) {
 void Referee::CountLaps(const RefereeInput& input, const VehicleState& state) {
   if (!last_position_ || finish_) return;
   const double time = SecondsBetween(*first_utime_, input.utime);
-  const Eigen::Vector2d position = state.T_map_base.position();
   const auto at = [](double from, double to, double share) { return from + share * (to - from); };
-  const GateCrossing start = CrossGate(track_.start_line, *last_position_, position);
-  starts_ += start.direction;
-  if (starts_ > most_starts_) {
-    // Not a line that was crossed backward and then forward again.
-    most_starts_ = starts_;
-    if (track_.closed || !lap_start_)
-      OnLine(at(last_time_, time, start.share), at(last_distance_, state.distance, start.share));
-  }
-  if (track_.closed || !lap_start_) return;
-  const GateCrossing finish = CrossGate(track_.finish_line, *last_position_, position);
-  if (finish.direction > 0)
-    OnLine(at(last_time_, time, finish.share), at(last_distance_, state.distance, finish.share));
+  const std::optional<double> share = lines_.Cross(*last_position_, state.T_map_base.position());
+  if (share) OnLine(at(last_time_, time, *share), at(last_distance_, state.distance, *share));
 }
 
 void Referee::OnLine(double time, double distance) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/car.hpp"
+#include "tools/simulator/timing_lines.hpp"
 #include "tools/simulator/track.hpp"
 #include "tools/simulator/track_area.hpp"
 #include "tools/simulator/vehicle.hpp"
@@ -80,8 +81,8 @@ class Referee {
 
   RefereeParams params_;
   Car car_;
-  Track track_;
   TrackArea area_;
+  TimingLines lines_;
   std::vector<TrackCone> standing_cones_;
   RaceResult result_;
   bool done_ = false;
@@ -90,8 +91,6 @@ class Referee {
   std::optional<Eigen::Vector2d> last_position_;
   double last_time_ = 0.0;  // s since first_utime_, as all times below
   double last_distance_ = 0.0;
-  int starts_ = 0;  // crossings of the start line, forward less backward
-  int most_starts_ = 0;
   std::optional<double> lap_start_;    // of the lap being driven
   std::optional<double> timed_start_;  // of the first lap
   double timed_start_distance_ = 0.0;

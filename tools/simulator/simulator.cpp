@@ -38,7 +38,8 @@ Simulator::Simulator(const SimulatorParams& params, const Car& car, const Track&
       motion_(params.motion_sensors, car, seed),
       referee_(params.referee, car, track),
       race_control_(params.race_control, car),
-      gnss_receiver_(params.gnss_receiver) {
+      gnss_receiver_(
+          {params.gnss_receiver.protocol, track.origin.value_or(params.gnss_receiver.origin)}) {
   RequireWithin("cone_delay", params.cone_delay_s, 0.0, 0.5);
   const auto add = [&](const char* source, const Channel<cones_t>& channel,
                        const ConeSensorParams& sensor) {

@@ -65,6 +65,16 @@ void LoadInertial(const Config& config, MotionSensorParams& params) {
   params.imu_bias_time_s = config.Number("bias_time_s", {1.0, 1e5});
 }
 
+int32_t LoadGnssFix(const Config& config) {
+  const std::string fix = config.Text("fix");
+  if (fix == "single") return gnss_t::FIX_SINGLE;
+  if (fix == "differential") return gnss_t::FIX_DIFFERENTIAL;
+  if (fix == "float") return gnss_t::FIX_FLOAT;
+  if (fix == "rtk") return gnss_t::FIX_RTK;
+  throw ConfigError("simulator: motion_sensors.gnss.fix: `" + fix +
+                    "` is none of single, differential, float, rtk");
+}
+
 MotionSensorParams LoadMotionSensors(const Config& config) {
   MotionSensorParams params;
   LoadInertial(config.Section("imu"), params);
@@ -81,6 +91,7 @@ MotionSensorParams LoadMotionSensors(const Config& config) {
   params.ground_speed_misalignment_rad =
       kDegree * ground_speed.Number("misalignment_deg", {0.0, 5.0});
   const Config gnss = config.Section("gnss");
+  params.gnss_fix = LoadGnssFix(gnss);
   params.gnss_position_bias_m = gnss.Number("position_bias_m", {0.0, 10.0});
   params.gnss_position_bias_time_s = gnss.Number("position_bias_time_s", {1.0, 1e5});
   params.gnss_position_noise_m = gnss.Number("position_noise_m", {0.001, 10.0});

@@ -24,8 +24,10 @@ Eigen::Matrix2d ReadCovariance(const TrackYaml& list) {
 
 GeodeticPoint ReadOrigin(const TrackYaml& value) {
   value.RefuseOtherKeys({"latitude_deg", "longitude_deg", "height_m"});
-  return {value.Get("latitude_deg").Number(), value.Get("longitude_deg").Number(),
-          value.Get("height_m").Number()};
+  const GeodeticPoint origin{value.Get("latitude_deg").Number(),
+                             value.Get("longitude_deg").Number(), value.Get("height_m").Number()};
+  if (!IsPlaceOnEarth(origin)) value.Refuse("is no place on Earth");
+  return origin;
 }
 
 LocatedCone ReadCone(const TrackYaml& value) {

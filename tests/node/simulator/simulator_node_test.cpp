@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "daemons/gnss_driver/gnss_driver.hpp"
 #include "tests/support/oval_track.hpp"
 #include "tests/support/simulator_setup.hpp"
 #include "tools/simulator/simulator.hpp"
@@ -281,6 +282,24 @@ TEST(Simulator, RefusesACommandFromTheFuture) {
   rig.bus.Publish(channels::kDriveCommand, command);
   rig.Run(0.01);
   EXPECT_EQ(rig.Refused("DRIVE_COMMAND"), 1);
+}
+
+TEST(Simulator, HasItsReceiverWhereTheTrackWasSurveyed) {
+  Track track = OvalTrack();
+  track.origin = GeodeticPoint{47.3961, 8.6481, 488.0};
+  Transport transport("memq://");
+  Bus bus(transport, "simulator", 1);
+  Simulator simulator(ShippedSimulatorParams(), ShippedCar(), track, 1, bus);
+  GnssDecoder decoder({});
+  std::vector<GnssFix> fixes;
+  simulator.OnGnss([&](std::span<const uint8_t> bytes) {
+    for (const GnssFix& fix : decoder.Add(bytes)) fixes.push_back(fix);
+  });
+  for (int i = 0; i < 30; ++i) simulator.Step();
+  ASSERT_FALSE(fixes.empty());
+  const Eigen::Vector3d place = LocalEnu(*track.origin).ToEnu(fixes[0].position);
+  EXPECT_NEAR(place.x(), track.start.x, 3.0);
+  EXPECT_NEAR(place.y(), track.start.y, 3.0);
 }
 
 }  // namespace

@@ -36,6 +36,14 @@ TEST(SimulatorParams, WantsADeadmanWhoseStepsFollowEachOther) {
               testing::HasSubstr("actuators.brake_after_s"));
 }
 
+TEST(SimulatorParams, KnowsTheReceiversSolutionsByName) {
+  const Config config = Config::Load(std::string(HAIRPIN_SOURCE_DIR) + "/config", "simulator",
+                                     {"motion_sensors.gnss.fix=rtk"});
+  EXPECT_EQ(LoadSimulatorParams(config).motion_sensors.gnss_fix, int32_t{gnss_t::FIX_RTK});
+  EXPECT_THAT(Problems({"motion_sensors.gnss.fix=fixed"}),
+              testing::HasSubstr("motion_sensors.gnss.fix: `fixed`"));
+}
+
 TEST(SimulatorParams, WantsTablesOfOneLengthAndRisingRanges) {
   EXPECT_THAT(Problems({"cone_sensors.lidar.recall=[0.9, 0.5]"}),
               testing::HasSubstr("cone_sensors.lidar.recall"));

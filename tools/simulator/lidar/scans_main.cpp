@@ -30,16 +30,13 @@ class Log {
   void Write(const Channel<M>& channel, M message, int64_t utime) {
     message.boot_id = 1;
     message.sequence = sequences_[channel.name]++;
-    bytes_.resize(static_cast<size_t>(message.getEncodedSize()));
-    message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
-    writer_.Write(utime, channel.name, bytes_.data(), bytes_.size());
+    writer_.Write(utime, channel, message);
   }
   void Close() { writer_.Close(); }
 
  private:
   LogWriter writer_;
   std::map<std::string, int32_t> sequences_;
-  std::vector<uint8_t> bytes_;
 };
 
 velocity_t TrueVelocity(int64_t utime, const VehicleState& state) {
