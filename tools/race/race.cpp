@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <iomanip>
 #include <memory>
@@ -161,7 +162,7 @@ StackOptions StackWith(const RaceOptions& options, const SimulatorParams& simula
   }
   if (stack.level == SensorLevel::kRaw) {
     // The track is surveyed: what the receiver measures is told in its frame.
-    const GeodeticPoint& origin = simulator.gnss_receiver.origin;
+    const GeodeticPoint origin = options.track.origin.value_or(simulator.gnss_receiver.origin);
     set("gnss_driver", "origin.is_first_fix", "false");
     set("gnss_driver", "origin.latitude_deg", origin.latitude_deg);
     set("gnss_driver", "origin.longitude_deg", origin.longitude_deg);
@@ -197,7 +198,16 @@ std::unique_ptr<LidarRig> PlugInRawSensors(const SimulatorParams& params, const 
   for (const std::string& source : Simulator::Sources()) {
     if (IsPipeline(source)) simulator.SetSource(source, false);
   }
-  simulator.OnGnss([&stack](std::span<const uint8_t> bytes) { stack.SendGnss(bytes); });
+  auto recording = std::make_shared<std::ofstream>();
+  if (!options.receiver_file.empty()) {
+    recording->open(options.receiver_file, std::ios::binary);
+    if (!*recording) throw std::runtime_error(options.receiver_file + ": cannot be written");
+  }
+  simulator.OnGnss([&stack, recording](std::span<const uint8_t> bytes) {
+    recording->write(reinterpret_cast<const char*>(bytes.data()),
+                     static_cast<std::streamsize>(bytes.size()));
+    stack.SendGnss(bytes);
+  });
   return MakeLidars(params.lidars, car, options, simulator, stack);
 }
 

@@ -27,6 +27,9 @@ struct RaceOptions {
   /// kCannelloni; empty: it does not, unless the sensors are raw. In one process it is memory.
   std::string can;
   std::string log_file;
+  /// With raw sensors: what the GNSS receiver sends, as its own recording would hold it; empty:
+  /// none.
+  std::string receiver_file;
   bool log_scans = false;  // LIDAR_FRONT and LIDAR_TOP too: 12 MB a second
 };
 

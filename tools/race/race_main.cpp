@@ -222,6 +222,7 @@ RaceOptions ToOptions(const Arguments& arguments, const Leg& leg) {
   for (const std::string& text : LegOverrides(leg, arguments.speed_cap))
     options.stack.overrides.push_back(text);
   options.log_file = leg.out + "/log.lcmlog";
+  options.receiver_file = leg.out + "/receiver.raw";
   return options;
 }
 
