@@ -18,20 +18,8 @@ GnssErrorModel LoadErrors(const Config& config) {
           .heading_rad = config.Number("heading_rad", {1e-4, 1.0})};
 }
 
-gnss_t ToMessage(const GnssFix& fix, const Eigen::Vector3d& position, double baseline_yaw) {
-  gnss_t message{};
-  message.utime = fix.utime;
-  message.fix = static_cast<int32_t>(fix.type);
-  for (int i = 0; i < 3; ++i) {
-    message.position_enu_m[i] = position[i];
-    message.position_sigma_m[i] = fix.position_sigma[i];
-    message.velocity_enu_mps[i] = fix.velocity[i];
-    message.velocity_sigma_mps[i] = fix.velocity_sigma[i];
-  }
-  message.heading_valid = fix.heading.has_value();
-  message.heading_rad = fix.heading ? WrapAngle(*fix.heading - baseline_yaw) : 0.0;
-  message.heading_sigma_rad = fix.heading_sigma;
-  return message;
+bool HasPosition(const GnssFix& fix) {
+  return fix.type != FixType::kNone && fix.type != FixType::kUnknown;
 }
 
 }  // namespace
@@ -54,6 +42,24 @@ GnssDriverParams LoadGnssDriverParams(const Config& config) {
   return params;
 }
 
+gnss_t ToMessage(const GnssFix& fix, const LocalEnu* plane, double antenna_baseline_yaw) {
+  const bool is_placed = HasPosition(fix) && plane != nullptr;
+  const Eigen::Vector3d position = is_placed ? plane->ToEnu(fix.position) : Eigen::Vector3d::Zero();
+  gnss_t message{};
+  message.utime = fix.utime;
+  message.fix = fix.has_velocity ? static_cast<int32_t>(fix.type) : gnss_t::FIX_NONE;
+  for (int i = 0; i < 3; ++i) {
+    message.position_enu_m[i] = position[i];
+    message.position_sigma_m[i] = fix.position_sigma[i];
+    message.velocity_enu_mps[i] = fix.velocity[i];
+    message.velocity_sigma_mps[i] = fix.velocity_sigma[i];
+  }
+  message.heading_valid = fix.heading.has_value();
+  message.heading_rad = fix.heading ? WrapAngle(*fix.heading - antenna_baseline_yaw) : 0.0;
+  message.heading_sigma_rad = fix.heading_sigma;
+  return message;
+}
+
 GnssDriverNode::GnssDriverNode(const GnssDriverParams& params, Bus& bus)
     : params_(params), bus_(bus), health_(bus.AddInput(kInput)), decoder_(params.errors) {
   if (!params.origin_is_first_fix) plane_.emplace(params.origin);
@@ -65,13 +71,8 @@ void GnssDriverNode::OnBytes(Bytes bytes) {
 }
 
 void GnssDriverNode::Publish(const GnssFix& fix) {
-  const bool has_position = fix.type != FixType::kNone && fix.type != FixType::kUnknown;
-  if (has_position && !plane_) plane_.emplace(fix.position);
-  const Eigen::Vector3d position =
-      has_position ? plane_->ToEnu(fix.position) : Eigen::Vector3d::Zero();
-  gnss_t message = ToMessage(fix, position, params_.antenna_baseline_yaw);
-  // A receiver without a velocity has no fix as far as the estimator goes.
-  if (!fix.has_velocity) message.fix = gnss_t::FIX_NONE;
+  if (HasPosition(fix) && !plane_) plane_.emplace(fix.position);
+  const gnss_t message = ToMessage(fix, plane_ ? &*plane_ : nullptr, params_.antenna_baseline_yaw);
   ++health_.received;
   bus_.Publish(channels::kGnss, message);
   bus_.AdvanceDataTime(message.utime);

@@ -23,6 +23,11 @@ struct GnssDriverParams {
 /// Reads `gnss_driver.yaml`. Throws ConfigError.
 GnssDriverParams LoadGnssDriverParams(const Config& config);
 
+/// The message that tells of a fix: the position on `plane`, zero where there is none, and the
+/// heading of base's x axis, whose line of antennas is turned by `antenna_baseline_yaw` [rad].
+/// FIX_NONE without a velocity: as far as the estimator goes there is no fix then.
+gnss_t ToMessage(const GnssFix& fix, const LocalEnu* plane, double antenna_baseline_yaw);
+
 /// Publishes GNSS for each fix. In its heartbeats, what the receiver sent stands as the channel
 /// "serial": `received` are fixes, `undecodable` frames thrown away, `implausible_time` fixes not
 /// published since their time does not increase.

@@ -70,6 +70,7 @@ std::map<std::string, Take> Takers(RunLog& log) {
           {channels::kRaceLine.name, Into(log.race_lines)},
           {channels::kDriveCommand.name, Into(log.drive_commands)},
           {channels::kVelocity.name, Into(log.velocities)},
+          {channels::kGnss.name, Into(log.gnss)},
           {channels::kConesFusion.name, Into(log.cones_fusion)},
           {channels::kConesLidar.name, Into(log.cones_lidar)},
           {channels::kConesCamera.name, Into(log.cones_camera)}};
@@ -85,6 +86,7 @@ void SortAll(RunLog& log) {
   SortByTime(log.race_lines);
   SortByTime(log.drive_commands);
   SortByTime(log.velocities);
+  SortByTime(log.gnss);
   SortByTime(log.cones_fusion);
   SortByTime(log.cones_lidar);
   SortByTime(log.cones_camera);
@@ -98,6 +100,9 @@ RunLog LoadRunLog(const std::string& path, int64_t max_bytes) {
   LogReader reader(path);
   int64_t kept_bytes = 0;
   while (const auto event = reader.Next()) {
+    const int64_t time = event->timestamp_us;
+    log.first_us = log.events == 0 ? time : std::min(log.first_us, time);
+    log.last_us = log.events == 0 ? time : std::max(log.last_us, time);
     ++log.events;
     const auto taker = takers.find(event->channel);
     if (taker == takers.end()) continue;

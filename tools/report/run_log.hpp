@@ -22,11 +22,14 @@ struct RunLog {
   std::vector<race_line_t> race_lines;
   std::vector<drive_command_t> drive_commands;
   std::vector<velocity_t> velocities;
+  std::vector<gnss_t> gnss;
   std::vector<cones_t> cones_fusion;
   std::vector<cones_t> cones_lidar;
   std::vector<cones_t> cones_camera;
 
-  int64_t events = 0;         // in the file
+  int64_t events = 0;    // in the file
+  int64_t first_us = 0;  // the earliest and the latest of their timestamps
+  int64_t last_us = 0;
   int64_t undecodable = 0;    // on a channel read here, but of another type, malformed, or with NaN
   int64_t over_limit = 0;     // left out, since the log holds more than was to be kept
   int64_t skipped_bytes = 0;  // corrupt

@@ -8,8 +8,6 @@
 namespace hairpin {
 namespace {
 
-constexpr double kMaxGap = 0.5;  // s
-
 TrueState ToState(const truth_t& truth) {
   return {{truth.x_m, truth.y_m, truth.yaw_rad},
           {truth.vx_mps, truth.vy_mps, truth.yaw_rate_radps},
@@ -39,7 +37,7 @@ std::optional<TrueState> TrueTrajectory::At(int64_t utime) const {
   if (next == truth_.begin()) return std::nullopt;
   const truth_t& last = *(next - 1);
   const double gap = SecondsBetween(last.utime, next->utime);
-  if (gap > kMaxGap) return std::nullopt;
+  if (gap > kMaxTruthGap) return std::nullopt;
   return Interpolate(ToState(last), ToState(*next), SecondsBetween(last.utime, utime) / gap);
 }
 
