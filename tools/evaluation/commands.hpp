@@ -12,6 +12,7 @@ void AddMapCommand(CLI::App& app);
 void AddPlannerCommand(CLI::App& app);
 void AddRunCommand(CLI::App& app);
 void AddSlamCommand(CLI::App& app);
+void AddTruthCommand(CLI::App& app);
 void AddVelocityCommand(CLI::App& app);
 
 }  // namespace hairpin

@@ -1,35 +1,32 @@
-#include <deque>
-
 #include "common/channels.hpp"
 #include "common/clock.hpp"
 #include "tools/evaluation/lidar_sources.hpp"
 #include "tools/evaluation/recording_error.hpp"
 #include "tools/evaluation/stopwatch.hpp"
 #include "tools/report/log_reader.hpp"
+#include "tools/report/trajectory.hpp"
 
 namespace hairpin {
 namespace {
 
 constexpr double kReach = 30.0;  // m: farther cones are not looked for
-constexpr size_t kTruths = 100;  // kept: a second
 
 bool IsReplayed(const std::string& channel) {
   return channel == channels::kLidarFront.name || channel == channels::kLidarTop.name ||
-         channel == channels::kVelocity.name || channel == channels::kTruth.name ||
-         channel == channels::kTruthTrack.name;
+         channel == channels::kVelocity.name;
 }
 
 /// The node between a log and the truth that the log holds.
 class Replay {
  public:
-  Replay(const LidarConeDetectorNodeParams& params, ScanListener listener)
-      : params_(params), listener_(std::move(listener)), node_(params, bus_) {
+  /// `log` must outlive this.
+  Replay(const RunLog& log, const LidarConeDetectorNodeParams& params, ScanListener listener)
+      : trajectory_(log),
+        track_(log.truth_track),
+        params_(params),
+        listener_(std::move(listener)),
+        node_(params, bus_) {
     node_.OnStageDone([this](DetectorStage stage) { stopwatch_.Record(stage); });
-    observer_.Subscribe(channels::kTruthTrack, [this](const truth_track_t& m) { track_ = m; });
-    observer_.Subscribe(channels::kTruth, [this](const truth_t& m) {
-      truths_.push_back(m);
-      if (truths_.size() > kTruths) truths_.pop_front();
-    });
     observer_.Subscribe(channels::kConesLidar, [this](const cones_t& m) { OnCones(m); });
   }
 
@@ -40,23 +37,14 @@ class Replay {
   int64_t scans() const { return scans_; }
 
  private:
-  std::optional<Pose2> PoseAt(int64_t utime) const {
-    for (auto truth = truths_.rbegin(); truth != truths_.rend(); ++truth) {
-      if (truth->utime > utime) continue;
-      return Pose2{truth->x_m, truth->y_m, truth->yaw_rad} *
-             Integrate({truth->vx_mps, truth->vy_mps, truth->yaw_rate_radps},
-                       SecondsBetween(truth->utime, utime));
-    }
-    return std::nullopt;
-  }
-
   void OnCones(const cones_t& message) {
-    const std::optional<Pose2> T_map_base = PoseAt(message.utime);
-    if (!T_map_base || !track_) return;
+    const std::optional<TrueState> state = trajectory_.At(message.utime);
+    if (!state || !track_) return;
+    const Pose2 T_base_map = state->T_map_base.Inverse();
     std::vector<TrueCone> truth;
     for (const truth_cone_t& cone : track_->cones) {
       const auto colour = static_cast<ConeColour>(cone.colour);
-      const Eigen::Vector2d position = T_map_base->Inverse() * Eigen::Vector2d(cone.x_m, cone.y_m);
+      const Eigen::Vector2d position = T_base_map * Eigen::Vector2d(cone.x_m, cone.y_m);
       if (position.norm() < kReach) truth.push_back({position, colour, 0});
     }
     CountReturns(node_.cloud(), truth);
@@ -69,6 +57,8 @@ class Replay {
                params_.T_base_sensor[0].translation().head<2>().cast<double>(), stopwatch_.Laps()});
   }
 
+  TrueTrajectory trajectory_;
+  const std::optional<truth_track_t>& track_;
   LidarConeDetectorNodeParams params_;
   ScanListener listener_;
   Transport transport_{"memq://"};
@@ -76,8 +66,6 @@ class Replay {
   Bus observer_{transport_, "evaluate", 2};
   LidarConeDetectorNode node_;
   Stopwatch stopwatch_;
-  std::optional<truth_track_t> track_;
-  std::deque<truth_t> truths_;
   int64_t scans_ = 0;
 };
 
@@ -85,7 +73,8 @@ class Replay {
 
 void DetectInLog(const std::string& log, const LidarConeDetectorNodeParams& params,
                  const ScanListener& listener) {
-  Replay replay(params, listener);
+  const RunLog run = LoadRunLog(log);
+  Replay replay(run, params, listener);
   LogReader reader(log);
   while (const std::optional<LogEvent> event = reader.Next()) {
     if (IsReplayed(event->channel)) replay.Feed(*event);

@@ -26,8 +26,8 @@ using ScanListener = std::function<void(const EvaluatedScan&)>;
 void DetectInRecording(const std::string& run, const std::string& map, int rings,
                        const LidarConeDetectorNodeParams& params, const ScanListener& listener);
 
-/// The daemon's node on the LIDAR_* and VELOCITY of a log that also holds TRUTH and TRUTH_TRACK.
-/// Throws RecordingError.
+/// The daemon's node on the LIDAR_* and VELOCITY of a log that also holds TRUTH and TRUTH_TRACK;
+/// scans without truth about them are left out. Throws RecordingError.
 void DetectInLog(const std::string& log, const LidarConeDetectorNodeParams& params,
                  const ScanListener& listener);
 

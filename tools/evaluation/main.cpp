@@ -20,6 +20,7 @@ int Main(int argc, char** argv) {
   AddPlannerCommand(app);
   AddRunCommand(app);
   AddSlamCommand(app);
+  AddTruthCommand(app);
   AddVelocityCommand(app);
   try {
     app.parse(argc, argv);  // runs the subcommand

@@ -69,7 +69,8 @@ void Run(const MapOptions& options) {
 void AddMapCommand(CLI::App& app) {
   CLI::App* map = app.add_subcommand("map", "the global map of a run's log against the truth");
   const auto options = std::make_shared<MapOptions>();
-  map->add_option("--log", options->log, "log.lcmlog of a simulated run")->required();
+  map->add_option("--log", options->log, "log.lcmlog of a simulated run, or of `truth`")
+      ->required();
   map->add_option("--picture", options->picture, "draw track and map into this .svg file");
   map->add_flag("--json", options->json, "print one JSON object, with the error along the track");
   map->callback([options] { Run(*options); });
