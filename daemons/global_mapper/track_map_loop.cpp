@@ -148,7 +148,8 @@ bool TrackMap::FitsAfterSolve(const MergeRecord& merge) const {
   return std::sqrt(sum / static_cast<double>(merge.pairs.size())) <= params_.loop.max_rmse;
 }
 
-/// Landmarks that stand in one place and were never seen side by side.
+/// Landmarks that stand in one place and were never seen side by side, or stand nearer than cones
+/// do.
 std::optional<MergeRecord> TrackMap::FindDoubles(int64_t utime) const {
   MergeRecord merge{utime, false, false, {}};
   std::vector<bool> gone(table_.landmarks().size(), false);
@@ -158,9 +159,9 @@ std::optional<MergeRecord> TrackMap::FindDoubles(int64_t utime) const {
       if (gone[a] || gone[b] || !landmarks[a].alive || !landmarks[b].alive) continue;
       const double distance = (graph_.landmark(a) - graph_.landmark(b)).norm();
       if (distance > params_.loop.same_cone) continue;
-      if (!AreCompatible(landmarks[a].colour(), landmarks[b].colour()) && distance > kCrowded)
-        continue;
-      if (graph_.MayHaveBeenSeenTogether(a, b)) continue;
+      const bool may_be_two = !AreCompatible(landmarks[a].colour(), landmarks[b].colour()) ||
+                              graph_.MayHaveBeenSeenTogether(a, b);
+      if (may_be_two && distance > kCrowded) continue;
       gone[b] = true;
       merge.pairs.emplace_back(static_cast<int64_t>(b), static_cast<int64_t>(a));
     }
