@@ -1,8 +1,9 @@
 #include "daemons/boundary_estimator/boundary_estimator.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <string>
+
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
@@ -36,9 +37,7 @@ BoundaryEstimator::BoundaryEstimator(const BoundaryEstimatorParams& params)
     : params_(params),
       search_(params.search, params.score),
       width_seen_(params.one_sided.default_width) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("BoundaryEstimatorParams: ") + what);
-  };
+  constexpr Require require("BoundaryEstimatorParams");
   require(params.min_existence >= 0.0 && params.min_existence <= 1.0,
           "min_existence must be in [0, 1]");
   require(params.near_min_existence >= params.min_existence && params.near_min_existence <= 1.0,

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
@@ -97,9 +98,7 @@ void Extrapolate(std::vector<PathPoint>& points, double length, const MiddlePath
 }  // namespace
 
 void Check(const MiddlePathParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("MiddlePathParams: ") + what);
-  };
+  constexpr Require require("MiddlePathParams");
   require(params.point_spacing > 0.0, "point_spacing must be > 0");
   require(params.join_length >= 0.0, "join_length must be >= 0");
   require(params.max_join_angle >= 0.0, "max_join_angle must be >= 0");

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 #include <string>
+
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
@@ -150,9 +151,7 @@ double LeadOf(const Scene& scene, const std::vector<int>& chain, const Stretch& 
 }  // namespace
 
 void Check(const OneSidedParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("OneSidedParams: ") + what);
-  };
+  constexpr Require require("OneSidedParams");
   require(params.min_spacing > 0.0, "min_spacing must be > 0");
   require(params.max_spacing > params.min_spacing, "max_spacing must be > min_spacing");
   require(params.max_turn > 0.0 && params.max_turn < 0.5 * std::numbers::pi,

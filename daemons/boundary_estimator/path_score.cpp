@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "common/require.hpp"
 
 namespace hairpin {
 
 void Check(const PathScoreParams& params) {
-  const auto require = [](bool holds, const std::string& what) {
-    if (!holds) throw std::invalid_argument("PathScoreParams: " + what);
-  };
+  constexpr Require require("PathScoreParams");
   require(params.prior_weight > 0.0, "prior_weight must be > 0");
   for (size_t j = 0; j < kNumFeatures; ++j) {
     require(params.weight[j] >= 0.0, "weight[" + std::to_string(j) + "] must be >= 0");

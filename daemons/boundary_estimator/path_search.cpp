@@ -6,6 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "common/require.hpp"
+
 namespace hairpin {
 namespace {
 
@@ -32,9 +34,7 @@ int Third(const std::array<int, 3>& vertex, const CrossedEdge& edge) {
 }  // namespace
 
 void Check(const PathSearchParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("PathSearchParams: ") + what);
-  };
+  constexpr Require require("PathSearchParams");
   require(params.beam_width >= 1, "beam_width must be >= 1");
   require(params.max_edges >= 1, "max_edges must be >= 1");
   require(params.horizon > 0.0, "horizon must be > 0");

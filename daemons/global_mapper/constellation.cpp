@@ -5,10 +5,12 @@
 #include <map>
 #include <tuple>
 
-#include "daemons/global_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("global_mapper");
 
 constexpr double kMinBaseline = 3.0;  // m: a nearer pair says little of the turn
 constexpr size_t kMaxPoints = 40;     // bounds the work; the first ones count
@@ -224,13 +226,13 @@ Points FirstOf(const Points& points) {
 }  // namespace
 
 void ConstellationParams::Validate() const {
-  RequireGlobalMap(tolerance > 0.0, "constellation tolerance must be > 0");
-  RequireGlobalMap(max_translation > 0.0, "constellation max_translation must be > 0");
-  RequireGlobalMap(max_rotation > 0.0, "constellation max_rotation must be > 0");
-  RequireGlobalMap(min_pairs >= 3, "constellation min_pairs must be >= 3");
-  RequireGlobalMap(min_lead >= 1, "constellation min_lead must be >= 1");
-  RequireGlobalMap(contradiction_weight >= 0.0 && contradiction_weight <= 1.0,
-                   "constellation contradiction_weight must be in [0, 1]");
+  require(tolerance > 0.0, "constellation tolerance must be > 0");
+  require(max_translation > 0.0, "constellation max_translation must be > 0");
+  require(max_rotation > 0.0, "constellation max_rotation must be > 0");
+  require(min_pairs >= 3, "constellation min_pairs must be >= 3");
+  require(min_lead >= 1, "constellation min_lead must be >= 1");
+  require(contradiction_weight >= 0.0 && contradiction_weight <= 1.0,
+          "constellation contradiction_weight must be in [0, 1]");
 }
 
 bool AreCompatible(ConeColour a, ConeColour b) {

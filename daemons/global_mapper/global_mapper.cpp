@@ -3,10 +3,12 @@
 #include <cmath>
 
 #include "common/clock.hpp"
-#include "daemons/global_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("global_mapper");
 
 constexpr double kGateMargin = 2.0;   // m beside the gate's cones that still is through it
 constexpr double kLostSpeed = 5.0;    // m/s, of an unknown motion: the sigma that is assumed
@@ -29,7 +31,7 @@ void GlobalMapperParams::Validate() const {
   map.Validate();
   localiser.Validate();
   odometry.Validate();
-  RequireGlobalMap(min_lap_distance > 0.0, "min_lap_distance must be > 0");
+  require(min_lap_distance > 0.0, "min_lap_distance must be > 0");
 }
 
 GlobalMapper::GlobalMapper(const GlobalMapperParams& params)

@@ -1,11 +1,13 @@
 #include <Eigen/LU>
 
+#include "common/require.hpp"
 #include "daemons/global_mapper/pose_landmark_graph.hpp"
-#include "daemons/global_mapper/require.hpp"
 #include "daemons/global_mapper/sparse_inverse.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("global_mapper");
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
@@ -99,7 +101,7 @@ std::vector<Eigen::Matrix2d> PoseLandmarkGraph::LandmarkCovariances() const {
   const std::vector<size_t> seen = SeenFrom(first_pose_);
   const std::vector<size_t> known = prior_.KnownAmong(seen);
   const auto prior = prior_.Marginalised(known);
-  RequireGlobalMap(prior.has_value(), "information is not positive definite");
+  require(prior.has_value(), "information is not positive definite");
   std::vector<Eigen::Index> first_of(landmarks_.size(), -1);
   auto next = 3 * static_cast<Eigen::Index>(poses_.size());
   for (const size_t l : seen) {

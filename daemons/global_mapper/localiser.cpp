@@ -6,10 +6,12 @@
 #include <set>
 #include <tuple>
 
-#include "daemons/global_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("global_mapper");
 
 constexpr double kPlacedPositionSigma = 0.2;  // m: what the shape of the cones leaves open
 constexpr double kPlacedYawSigma = 0.03;      // rad
@@ -30,14 +32,14 @@ Jacobian ByPose(const Eigen::Vector2d& lever) {
 
 void LocaliserParams::Validate() const {
   constellation.Validate();
-  RequireGlobalMap(filter.max_range > 0.0, "localisation max_range must be > 0");
-  RequireGlobalMap(gate_chi2 > 0.0, "localisation gate_chi2 must be > 0");
-  RequireGlobalMap(gate_distance > 0.0, "localisation gate_distance must be > 0");
-  RequireGlobalMap(covariance_inflation >= 1.0, "localisation covariance_inflation must be >= 1");
-  RequireGlobalMap(cone_sigma > 0.0, "localisation cone_sigma must be > 0");
-  RequireGlobalMap(min_match_share > 0.0 && min_match_share <= 1.0,
-                   "localisation min_match_share must be in (0, 1]");
-  RequireGlobalMap(max_unmatched > 0, "localisation max_unmatched must be > 0");
+  require(filter.max_range > 0.0, "localisation max_range must be > 0");
+  require(gate_chi2 > 0.0, "localisation gate_chi2 must be > 0");
+  require(gate_distance > 0.0, "localisation gate_distance must be > 0");
+  require(covariance_inflation >= 1.0, "localisation covariance_inflation must be >= 1");
+  require(cone_sigma > 0.0, "localisation cone_sigma must be > 0");
+  require(min_match_share > 0.0 && min_match_share <= 1.0,
+          "localisation min_match_share must be in (0, 1]");
+  require(max_unmatched > 0, "localisation max_unmatched must be > 0");
 }
 
 Localiser::Localiser(const LocaliserParams& params, std::vector<GlobalCone> cones,

@@ -4,11 +4,13 @@
 #include <utility>
 
 #include "common/clock.hpp"
+#include "common/require.hpp"
 #include "daemons/global_mapper/map_file.hpp"
-#include "daemons/global_mapper/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("global_mapper");
 
 int64_t TimeOf(const MapRecord& record) {
   return std::visit([](const auto& kind) { return kind.utime; }, record);
@@ -17,8 +19,8 @@ int64_t TimeOf(const MapRecord& record) {
 }  // namespace
 
 MapStore::MapStore(const MapStoreParams& params) : params_(params) {
-  RequireGlobalMap(params.resume_within > 0.0, "resume_within must be > 0");
-  RequireGlobalMap(params.max_journal_bytes > 0, "max_journal_bytes must be > 0");
+  require(params.resume_within > 0.0, "resume_within must be > 0");
+  require(params.max_journal_bytes > 0, "max_journal_bytes must be > 0");
   if (params_.directory.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(params_.directory, error);

@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "common/clock.hpp"
-#include "daemons/global_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("global_mapper");
 
 constexpr double kGap = 0.1;  // s: a longer interval between velocities is a gap
 
@@ -30,14 +32,14 @@ bool IsSound(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 void OdometryParams::Validate() const {
-  RequireGlobalMap(history > 0.0, "history must be > 0");
-  RequireGlobalMap(error_time > 0.0, "velocity_error_time must be > 0");
-  RequireGlobalMap(position_sigma >= 0.0, "odometry position_sigma must be >= 0");
-  RequireGlobalMap(yaw_sigma >= 0.0, "odometry yaw_sigma must be >= 0");
-  RequireGlobalMap(min_position_sigma > 0.0, "odometry min_position_sigma must be > 0");
-  RequireGlobalMap(min_yaw_sigma > 0.0, "odometry min_yaw_sigma must be > 0");
-  RequireGlobalMap(gap_acceleration >= 0.0, "gap_acceleration must be >= 0");
-  RequireGlobalMap(gap_yaw_acceleration >= 0.0, "gap_yaw_acceleration must be >= 0");
+  require(history > 0.0, "history must be > 0");
+  require(error_time > 0.0, "velocity_error_time must be > 0");
+  require(position_sigma >= 0.0, "odometry position_sigma must be >= 0");
+  require(yaw_sigma >= 0.0, "odometry yaw_sigma must be >= 0");
+  require(min_position_sigma > 0.0, "odometry min_position_sigma must be > 0");
+  require(min_yaw_sigma > 0.0, "odometry min_yaw_sigma must be > 0");
+  require(gap_acceleration >= 0.0, "gap_acceleration must be >= 0");
+  require(gap_yaw_acceleration >= 0.0, "gap_yaw_acceleration must be >= 0");
 }
 
 Eigen::Matrix3d CovarianceByDistance(const OdometryParams& params, const Pose2& motion) {

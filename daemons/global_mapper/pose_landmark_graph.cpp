@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemons/global_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("global_mapper");
 
 constexpr double kAnchorVariance = 1e-8;  // m^2, rad^2: where the first pose is, is a definition
 
@@ -14,11 +16,11 @@ constexpr double kAnchorVariance = 1e-8;  // m^2, rad^2: where the first pose is
 
 void GraphParams::Validate() const {
   for (const SolverParams* solver : {&window, &full}) {
-    RequireGlobalMap(solver->max_iterations > 0, "max_iterations must be > 0");
-    RequireGlobalMap(solver->loss_scale >= 0.0, "loss_scale must be >= 0");
-    RequireGlobalMap(solver->tolerance > 0.0, "tolerance must be > 0");
+    require(solver->max_iterations > 0, "max_iterations must be > 0");
+    require(solver->loss_scale >= 0.0, "loss_scale must be >= 0");
+    require(solver->tolerance > 0.0, "tolerance must be > 0");
   }
-  RequireGlobalMap(window_poses > 1, "window_poses must be > 1");
+  require(window_poses > 1, "window_poses must be > 1");
 }
 
 PoseLandmarkGraph::PoseLandmarkGraph(const GraphParams& params, const Pose2& first_pose)
@@ -41,8 +43,8 @@ size_t PoseLandmarkGraph::AddLandmark(const Eigen::Vector2d& position) {
 }
 
 void PoseLandmarkGraph::AddSighting(size_t landmark, const LandmarkMeasurement& measurement) {
-  RequireGlobalMap(landmark < landmarks_.size() && landmarks_[landmark].alive,
-                   "a sighting of a landmark that there is not");
+  require(landmark < landmarks_.size() && landmarks_[landmark].alive,
+          "a sighting of a landmark that there is not");
   poses_.back().sightings.push_back({landmark, measurement});
 }
 
@@ -174,7 +176,7 @@ void PoseLandmarkGraph::RefreezeAll() {
 }
 
 void PoseLandmarkGraph::MarginaliseOldest() {
-  RequireGlobalMap(poses_.size() > 1, "the last pose cannot be marginalised");
+  require(poses_.size() > 1, "the last pose cannot be marginalised");
   const PoseNode& oldest = poses_[0];
   if (frozen_end_ > first_pose_) {
     Thaw(oldest);

@@ -3,14 +3,17 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
 
-#include "daemons/global_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
+namespace {
+constexpr Require require("global_mapper");
+}  // namespace
 
 SparseInverse::SparseInverse(const Eigen::SparseMatrix<double>& H) {
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor(H);
-  RequireGlobalMap(factor.info() == Eigen::Success && (factor.vectorD().array() > 0.0).all(),
-                   "information is not positive definite");
+  require(factor.info() == Eigen::Success && (factor.vectorD().array() > 0.0).all(),
+          "information is not positive definite");
   place_ = factor.permutationP().indices();
   const Eigen::SparseMatrix<double>& L = factor.matrixL().nestedExpression();
   Z_ = L;

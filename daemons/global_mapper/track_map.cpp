@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemons/global_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("global_mapper");
 
 constexpr int kSettlesIn = 2;  // keyframes
 
@@ -35,32 +37,31 @@ Eigen::Matrix3d Propagate(const Eigen::Matrix3d& covariance, const Pose2& T_map_
 
 void TrackMapParams::Validate() const {
   graph.Validate();
-  RequireGlobalMap(filter.max_range > 0.0, "max_range must be > 0");
-  RequireGlobalMap(filter.min_existence >= 0.0 && filter.min_existence <= 1.0,
-                   "min_existence must be in [0, 1]");
-  RequireGlobalMap(filter.min_observations >= 1, "min_observations must be >= 1");
-  RequireGlobalMap(keyframe_distance > 0.0, "keyframe_distance must be > 0");
-  RequireGlobalMap(keyframe_angle > 0.0, "keyframe_angle must be > 0");
-  RequireGlobalMap(max_keyframes > graph.window_poses, "max_keyframes must be > window_poses");
-  RequireGlobalMap(max_open_keyframes >= max_keyframes,
-                   "max_open_keyframes must be >= max_keyframes");
-  RequireGlobalMap(full_solve_keyframes > 0, "full_solve_keyframes must be > 0");
-  RequireGlobalMap(max_landmarks > 0, "max_landmarks must be > 0");
-  RequireGlobalMap(min_sightings > 0, "min_sightings must be > 0");
-  RequireGlobalMap(covariance_inflation >= 1.0, "covariance_inflation must be >= 1");
-  RequireGlobalMap(cone_sigma > 0.0, "cone_sigma must be > 0");
-  RequireGlobalMap(association_gate > 0.0, "association_gate must be > 0");
-  RequireGlobalMap(memory_distance > 0.0, "memory_distance must be > 0");
+  require(filter.max_range > 0.0, "max_range must be > 0");
+  require(filter.min_existence >= 0.0 && filter.min_existence <= 1.0,
+          "min_existence must be in [0, 1]");
+  require(filter.min_observations >= 1, "min_observations must be >= 1");
+  require(keyframe_distance > 0.0, "keyframe_distance must be > 0");
+  require(keyframe_angle > 0.0, "keyframe_angle must be > 0");
+  require(max_keyframes > graph.window_poses, "max_keyframes must be > window_poses");
+  require(max_open_keyframes >= max_keyframes, "max_open_keyframes must be >= max_keyframes");
+  require(full_solve_keyframes > 0, "full_solve_keyframes must be > 0");
+  require(max_landmarks > 0, "max_landmarks must be > 0");
+  require(min_sightings > 0, "min_sightings must be > 0");
+  require(covariance_inflation >= 1.0, "covariance_inflation must be >= 1");
+  require(cone_sigma > 0.0, "cone_sigma must be > 0");
+  require(association_gate > 0.0, "association_gate must be > 0");
+  require(memory_distance > 0.0, "memory_distance must be > 0");
   loop.constellation.Validate();
   loop.gap.Validate();
-  RequireGlobalMap(loop.min_pairs_by_shape >= loop.constellation.min_pairs,
-                   "loop min_pairs_by_shape must be >= min_pairs");
-  RequireGlobalMap(loop.min_distance > 0.0, "loop min_distance must be > 0");
-  RequireGlobalMap(loop.recent_distance > 0.0, "loop recent_distance must be > 0");
-  RequireGlobalMap(loop.search_radius > 0.0, "loop search_radius must be > 0");
-  RequireGlobalMap(loop.gate_chi2 > 0.0, "loop gate_chi2 must be > 0");
-  RequireGlobalMap(loop.max_rmse > 0.0, "loop max_rmse must be > 0");
-  RequireGlobalMap(loop.same_cone > 0.0, "loop same_cone must be > 0");
+  require(loop.min_pairs_by_shape >= loop.constellation.min_pairs,
+          "loop min_pairs_by_shape must be >= min_pairs");
+  require(loop.min_distance > 0.0, "loop min_distance must be > 0");
+  require(loop.recent_distance > 0.0, "loop recent_distance must be > 0");
+  require(loop.search_radius > 0.0, "loop search_radius must be > 0");
+  require(loop.gate_chi2 > 0.0, "loop gate_chi2 must be > 0");
+  require(loop.max_rmse > 0.0, "loop max_rmse must be > 0");
+  require(loop.same_cone > 0.0, "loop same_cone must be > 0");
 }
 
 TrackMap::TrackMap(const TrackMapParams& params) : params_(params), graph_(params.graph) {

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemons/local_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("local_mapper");
 
 double LogOdds(double probability) { return std::log(probability / (1.0 - probability)); }
 double Probability(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
@@ -35,33 +37,33 @@ void AddColour(ColourDistribution& sum, const ColourDistribution& colour, double
 
 void LocalMapParams::Validate() const {
   const auto open_unit = [](double p) { return p > 0.0 && p < 1.0; };
-  Require(association.gate_chi2 > 0.0, "gate_chi2 must be > 0");
-  Require(association.gate_sigma >= 0.0, "gate_sigma must be >= 0");
-  Require(min_cone_distance >= 0.0, "min_cone_distance must be >= 0");
-  Require(odometry.position_sigma >= 0.0, "odometry position_sigma must be >= 0");
-  Require(odometry.yaw_sigma >= 0.0, "odometry yaw_sigma must be >= 0");
-  Require(refinement.velocity_sigma > 0.0, "velocity_sigma must be > 0");
-  Require(refinement.yaw_rate_sigma > 0.0, "yaw_rate_sigma must be > 0");
-  Require(refinement.stamp_sigma >= 0.0, "stamp_sigma must be >= 0");
-  Require(refinement.min_pairs >= 2, "min_pairs must be >= 2");
-  Require(unknown_colour_weight > 0.0 && unknown_colour_weight <= 1.0,
+  require(association.gate_chi2 > 0.0, "gate_chi2 must be > 0");
+  require(association.gate_sigma >= 0.0, "gate_sigma must be >= 0");
+  require(min_cone_distance >= 0.0, "min_cone_distance must be >= 0");
+  require(odometry.position_sigma >= 0.0, "odometry position_sigma must be >= 0");
+  require(odometry.yaw_sigma >= 0.0, "odometry yaw_sigma must be >= 0");
+  require(refinement.velocity_sigma > 0.0, "velocity_sigma must be > 0");
+  require(refinement.yaw_rate_sigma > 0.0, "yaw_rate_sigma must be > 0");
+  require(refinement.stamp_sigma >= 0.0, "stamp_sigma must be >= 0");
+  require(refinement.min_pairs >= 2, "min_pairs must be >= 2");
+  require(unknown_colour_weight > 0.0 && unknown_colour_weight <= 1.0,
           "unknown_colour_weight must be in (0, 1]");
-  Require(open_unit(existence.removed_below), "existence removed_below must be in (0, 1)");
-  Require(existence.removed_below < existence.at_first_sight,
+  require(open_unit(existence.removed_below), "existence removed_below must be in (0, 1)");
+  require(existence.removed_below < existence.at_first_sight,
           "existence at_first_sight must be > removed_below");
-  Require(existence.at_first_sight < existence.max, "existence max must be > at_first_sight");
-  Require(open_unit(existence.max), "existence max must be in (0, 1)");
-  Require(open_unit(existence.max_credited_recall), "max_credited_recall must be in (0, 1)");
-  Require(visibility.bearing_margin >= 0.0, "bearing_margin must be >= 0");
-  Require(visibility.range_margin >= 0.0, "range_margin must be >= 0");
-  Require(visibility.occlusion_half_width > 0.0, "occlusion_half_width must be > 0");
+  require(existence.at_first_sight < existence.max, "existence max must be > at_first_sight");
+  require(open_unit(existence.max), "existence max must be in (0, 1)");
+  require(open_unit(existence.max_credited_recall), "max_credited_recall must be in (0, 1)");
+  require(visibility.bearing_margin >= 0.0, "bearing_margin must be >= 0");
+  require(visibility.range_margin >= 0.0, "range_margin must be >= 0");
+  require(visibility.occlusion_half_width > 0.0, "occlusion_half_width must be > 0");
   for (const DetectorModel& model : detector) {
     model.recall.Validate("recall");
-    Require(open_unit(model.false_positive), "false_positive must be in (0, 1)");
+    require(open_unit(model.false_positive), "false_positive must be in (0, 1)");
   }
-  Require(forget_distance > 0.0, "forget_distance must be > 0");
-  Require(forget_radius > 0.0, "forget_radius must be > 0");
-  Require(max_cones > 0, "max_cones must be > 0");
+  require(forget_distance > 0.0, "forget_distance must be > 0");
+  require(forget_radius > 0.0, "forget_radius must be > 0");
+  require(max_cones > 0, "max_cones must be > 0");
 }
 
 LocalMap::LocalMap(const LocalMapParams& params) : params_(params) {

@@ -3,10 +3,12 @@
 #include <cmath>
 
 #include "common/clock.hpp"
-#include "daemons/local_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("local_mapper");
 
 /// What trapezoidal integration over a gap may miss, where the rate's derivative changes by
 /// `change` within it: h^2 / 12 * change, the error bound of the rule.
@@ -33,18 +35,18 @@ void LocalMapperParams::Validate() const {
   map.Validate();
   for (const Trust& each : {trust.fusion, trust.lidar_only, trust.camera_only,
                             trust.lidar_beside_camera, trust.camera_beside_lidar}) {
-    Require(each.position_weight > 0.0, "position_weight must be > 0");
-    Require(each.colour_weight >= 0.0, "colour_weight must be >= 0");
+    require(each.position_weight > 0.0, "position_weight must be > 0");
+    require(each.colour_weight >= 0.0, "colour_weight must be >= 0");
   }
-  Require(history >= 0.5, "history must be >= 0.5 s");
-  Require(velocity_deadline > 0.0, "velocity_deadline must be > 0");
-  Require(max_velocity_gap >= velocity_deadline, "max_velocity_gap must be >= velocity_deadline");
-  Require(gap_acceleration >= 0.0, "gap_acceleration must be >= 0");
-  Require(gap_yaw_acceleration >= 0.0, "gap_yaw_acceleration must be >= 0");
-  Require(max_speed > 0.0, "max_speed must be > 0");
-  Require(max_yaw_rate > 0.0, "max_yaw_rate must be > 0");
-  Require(cycle > 0.0, "cycle must be > 0");
-  Require(max_observations > 0, "max_observations must be > 0");
+  require(history >= 0.5, "history must be >= 0.5 s");
+  require(velocity_deadline > 0.0, "velocity_deadline must be > 0");
+  require(max_velocity_gap >= velocity_deadline, "max_velocity_gap must be >= velocity_deadline");
+  require(gap_acceleration >= 0.0, "gap_acceleration must be >= 0");
+  require(gap_yaw_acceleration >= 0.0, "gap_yaw_acceleration must be >= 0");
+  require(max_speed > 0.0, "max_speed must be > 0");
+  require(max_yaw_rate > 0.0, "max_yaw_rate must be > 0");
+  require(cycle > 0.0, "cycle must be > 0");
+  require(max_observations > 0, "max_observations must be > 0");
 }
 
 LocalMapper::LocalMapper(const LocalMapperParams& params)

@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "common/geometry.hpp"
-#include "daemons/local_mapper/require.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
+
+constexpr Require require("local_mapper");
 
 bool Covers(const ViewSector& sector, double bearing, double range) {
   const double centre = 0.5 * (sector.min_bearing + sector.max_bearing);
@@ -28,13 +30,13 @@ double RecallByRange::At(double cone_range) const {
 }
 
 void RecallByRange::Validate(const std::string& name) const {
-  Require(range.size() >= 2, name + " ranges must be >= 2 in number");
-  Require(range.size() == recall.size(), name + " recalls must be as many as its ranges");
+  require(range.size() >= 2, name + " ranges must be >= 2 in number");
+  require(range.size() == recall.size(), name + " recalls must be as many as its ranges");
   const auto not_rising = std::adjacent_find(range.begin(), range.end(), std::greater_equal<>());
-  Require(not_rising == range.end() && range.front() >= 0.0,
+  require(not_rising == range.end() && range.front() >= 0.0,
           name + " ranges must rise from >= 0 m");
   for (const double value : recall) {
-    Require(value >= 0.0 && value <= 1.0, name + " recalls must be in [0, 1]");
+    require(value >= 0.0 && value <= 1.0, name + " recalls must be in [0, 1]");
   }
 }
 

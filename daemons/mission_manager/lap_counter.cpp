@@ -1,16 +1,15 @@
 #include "daemons/mission_manager/lap_counter.hpp"
 
 #include <numbers>
-#include <stdexcept>
 #include <string>
+
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
 
 void Check(const LapCounterParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("LapCounter: ") + what);
-  };
+  constexpr Require require("LapCounter");
   Check(params.gate);
   require(params.min_lap_length > 0.0, "min_lap_length_m must be > 0");
   require(params.course_length == 0.0 || params.course_length >= params.min_lap_length,

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "common/clock.hpp"
+#include "common/require.hpp"
 #include "daemons/mission_manager/missions.hpp"
 #include "hairpin/global_map_t.hpp"
 #include "hairpin/vehicle_t.hpp"
@@ -13,9 +13,7 @@ namespace hairpin {
 namespace {
 
 void Check(const MissionManagerParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("MissionManager: ") + what);
-  };
+  constexpr Require require("MissionManager");
   require(params.autocross_laps >= 1, "autocross_laps must be >= 1");
   require(params.trackdrive_laps >= 1, "trackdrive_laps must be >= 1");
   require(params.localisation_deadline > 0.0, "the deadline of GLOBAL_MAP must be > 0");

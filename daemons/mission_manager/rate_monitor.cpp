@@ -1,8 +1,7 @@
 #include "daemons/mission_manager/rate_monitor.hpp"
 
-#include <stdexcept>
-
 #include "common/clock.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
@@ -14,9 +13,7 @@ constexpr double kFlood = 4.0;  // times the nominal rate; more tells nothing mo
 RateMonitor::RateMonitor(std::string channel, double rate, double deadline,
                          const RateMonitorParams& params)
     : channel_(std::move(channel)), rate_(rate), deadline_(deadline), params_(params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("RateMonitor: ") + what);
-  };
+  constexpr Require require("RateMonitor");
   require(rate > 0.0, "rate_hz must be > 0");
   require(deadline > 0.0, "deadline_s must be > 0");
   require(params.window > 0.0, "ready_after_s must be > 0");

@@ -1,8 +1,9 @@
 #include "daemons/mission_manager/start_line.hpp"
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
@@ -27,9 +28,7 @@ double StartLine::Beside(const Eigen::Vector2d& point) const {
 }
 
 void Check(const GateParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("Gate: ") + what);
-  };
+  constexpr Require require("Gate");
   require(params.range > 0.0, "gate_range_m must be > 0");
   require(params.min_mass > 0.0, "gate_min_mass must be > 0");
   require(params.min_cone_mass > 0.0, "gate_min_cone_mass must be > 0");

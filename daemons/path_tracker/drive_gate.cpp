@@ -1,17 +1,15 @@
 #include "daemons/path_tracker/drive_gate.hpp"
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "common/clock.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 
 void Check(const DriveGateParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("DriveGate: ") + what);
-  };
+  constexpr Require require("DriveGate");
   require(params.as_state_deadline > 0.0, "the deadline of AS_STATE must be > 0");
   require(params.pipeline_status_deadline > 0.0, "the deadline of PIPELINE_STATUS must be > 0");
   require(params.max_data_age > 0.0, "max_data_age_s must be > 0");

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "common/clock.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
@@ -17,9 +18,7 @@ constexpr double kSearchAhead =
 constexpr double kMaxStep = 0.1;  // s: no command grows for longer than this at once
 
 void Check(const PathTrackerParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("PathTracker: ") + what);
-  };
+  constexpr Require require("PathTracker");
   const SpeedControlParams& control = params.control;
   require(control.gain > 0.0, "speed_gain_per_s must be > 0");
   require(control.max_acceleration > 0.0, "max_acceleration_mps2 must be > 0");

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "common/clock.hpp"
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
@@ -16,9 +17,7 @@ constexpr double kFirstSearch = 15.0;  // m
 constexpr double kMaxStep = 0.1;       // s: the weight changes for no longer than this at once
 
 void Check(const RaceGuideParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("RaceGuide: ") + what);
-  };
+  constexpr Require require("RaceGuide");
   require(params.body_width > 0.0, "body_width_m must be > 0");
   require(params.max_age > 0.0, "max_data_age_s must be > 0");
   require(params.max_position_sigma > 0.0, "race_max_position_sigma_m must be > 0");

@@ -6,13 +6,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/require.hpp"
+
 namespace hairpin {
 namespace {
 
 void Check(const SpeedProfileParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("SpeedProfile: ") + what);
-  };
+  constexpr Require require("SpeedProfile");
   require(params.max_speed > 0.0, "max_speed_mps must be > 0");
   require(params.lateral_acceleration > 0.0, "lateral_acceleration_mps2 must be > 0");
   require(params.braking > 0.0, "braking_mps2 must be > 0");

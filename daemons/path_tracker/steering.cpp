@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
 
 void Check(const SteeringParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("SteeringLaw: ") + what);
-  };
+  constexpr Require require("SteeringLaw");
   require(params.lookahead_time >= 0.0, "lookahead_time_s must be >= 0");
   require(params.min_lookahead > 0.0, "min_lookahead_m must be > 0");
   require(params.damping > 0.0, "damping must be > 0");

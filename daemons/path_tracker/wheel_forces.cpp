@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "common/require.hpp"
 
 namespace hairpin {
 namespace {
@@ -11,9 +12,7 @@ namespace {
 constexpr double kGravity = 9.81;  // m/s2
 
 void Check(const WheelForcesParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("WheelForces: ") + what);
-  };
+  constexpr Require require("WheelForces");
   require(params.drag >= 0.0, "drag_n_per_mps2 must be >= 0");
   require(params.rolling_resistance >= 0.0, "rolling_resistance_n must be >= 0");
   require(params.grip > 0.0, "grip_mps2 must be > 0");

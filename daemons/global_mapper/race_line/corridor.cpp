@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/require.hpp"
+
 namespace hairpin {
 namespace {
 
@@ -24,9 +26,7 @@ struct SideCone {
 };
 
 void Check(const CorridorParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("Corridor: ") + what);
-  };
+  constexpr Require require("Corridor");
   require(params.spacing > 0.0, "spacing_m must be > 0");
   require(params.smoothing_length >= 0.0, "smoothing_length_m must be >= 0");
   require(params.max_half_width > 0.0, "max_half_width_m must be > 0");

@@ -5,15 +5,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/require.hpp"
+
 namespace hairpin {
 namespace {
 
 constexpr double kGravity = 9.81;  // m/s2
 
 void Check(const LapSpeedParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("LapSpeeds: ") + what);
-  };
+  constexpr Require require("LapSpeeds");
   require(params.max_speed > 0.0, "max_speed_mps must be > 0");
   require(params.lateral_acceleration > 0.0, "lateral_acceleration_mps2 must be > 0");
   require(params.braking > 0.0, "braking_mps2 must be > 0");

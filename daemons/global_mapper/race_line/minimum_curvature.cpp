@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
+#include "common/require.hpp"
 #include "daemons/global_mapper/race_line/box_qp.hpp"
 
 namespace hairpin {
@@ -15,9 +15,7 @@ constexpr double kInertia =
 constexpr int kSweptWindow = 4;  // points to each side whose curvature decides the width swept
 
 void Check(const MinimumCurvatureParams& params) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("MinimumCurvatureLine: ") + what);
-  };
+  constexpr Require require("MinimumCurvatureLine");
   require(params.max_iterations >= 1, "max_iterations must be >= 1");
   require(params.max_step > 0.0, "max_step_m must be > 0");
   require(params.tolerance > 0.0, "tolerance_m must be > 0");
