@@ -57,8 +57,8 @@ Motion GlobalMapper::MotionSince(const Seen& before, const LocalMapInput& map) c
   if (before.epoch != map.epoch) return integrated.value_or(UnknownMotion(seconds));
   Motion motion;
   motion.T_from_to = before.T_local_base.Inverse() * map.T_local_base;
-  motion.covariance = integrated ? integrated->covariance
-                                 : CovarianceByDistance(params_.odometry, motion.T_from_to);
+  motion.covariance =
+      integrated ? integrated->covariance : odometry_.CovarianceOf(motion.T_from_to, seconds);
   return motion;
 }
 

@@ -99,4 +99,17 @@ std::optional<Motion> VelocityOdometry::Between(int64_t from_utime, int64_t to_u
   return motion;
 }
 
+Eigen::Matrix3d VelocityOdometry::CovarianceOf(const Pose2& motion, double seconds) const {
+  Eigen::Matrix3d covariance = CovarianceByDistance(params_, motion);
+  if (samples_.empty()) return covariance;
+  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+  G.topLeftCorner<2, 2>() = Pose2{0.0, 0.0, 0.5 * motion.yaw}.rotation();
+  const Eigen::Matrix3d Q =
+      seconds * 2.0 * params_.error_time * G * samples_.back().covariance * G.transpose();
+  // Errors come evenly along a straight way: the integral of F Q F^T, F being the lever to its end.
+  const Eigen::Matrix3d J = Lever(motion.position()) - Eigen::Matrix3d::Identity();
+  covariance += Q + (J * Q + Q * J.transpose()) / 2.0 + J * Q * J.transpose() / 3.0;
+  return covariance;
+}
+
 }  // namespace hairpin

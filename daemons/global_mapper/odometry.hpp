@@ -50,6 +50,9 @@ class VelocityOdometry {
   /// Empty where a time is not within the history (or up to 0.1 s past it), or `to` is before
   /// `from`.
   std::optional<Motion> Between(int64_t from_utime, int64_t to_utime) const;
+  /// Of a motion that took `seconds` and is known from elsewhere, where its velocities were not
+  /// heard: as if all of it had been like the newest one.
+  Eigen::Matrix3d CovarianceOf(const Pose2& motion, double seconds) const;
 
  private:
   struct Sample {
