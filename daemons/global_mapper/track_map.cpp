@@ -69,7 +69,9 @@ TrackMap::TrackMap(const TrackMapParams& params) : params_(params), graph_(param
 }
 
 bool TrackMap::IsKeyframe(const Pose2& T_last_base) const {
-  return T_last_base.position().norm() >= params_.keyframe_distance ||
+  const double travelled = odometer_ + T_last_base.position().norm();
+  return std::floor(travelled / params_.keyframe_distance) >
+             std::floor(odometer_ / params_.keyframe_distance) ||
          std::abs(T_last_base.yaw) >= params_.keyframe_angle;
 }
 

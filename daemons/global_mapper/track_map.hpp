@@ -79,7 +79,8 @@ class TrackMap {
   bool empty() const { return !last_.has_value(); }
   /// Newest keyframe; only where not empty.
   const KeyframeRecord& last() const { return *last_; }
-  /// True if a map that is so far from the last keyframe is to become one.
+  /// True if a map that is so far from the last keyframe is to become one: where a whole number of
+  /// keyframe distances is passed, so that who misses one takes the same ones from then on.
   bool IsKeyframe(const Pose2& T_last_base) const;
   Pose2 last_pose() const { return graph_.newest_pose(); }
   const Eigen::Matrix3d& last_covariance() const { return covariance_; }

@@ -11,7 +11,7 @@ SlipParams LoadSlip(const Config& config) {
           .min_speed = config.Number("min_speed_mps", {0.1, 10.0})};
 }
 
-TyreParams LoadTyre(const Config& config) {
+LateralTyreParams LoadTyre(const Config& config) {
   return {.stiffness = config.Number("stiffness_per_load", {1.0, 100.0}),
           .shape = config.Number("shape", {1.0, 2.0}),
           .sigma_angle = config.Number("sigma_angle_rad", {1e-4, 0.2}),

@@ -31,7 +31,7 @@ Eigen::Vector2d VelocityAt(const StateVector& state, const Eigen::Vector2d& posi
           state[kVelocity + 1] + state[kYawRate] * position.x()};
 }
 
-double SlipAngle(double acceleration, const TyreParams& tyre, double friction) {
+double SlipAngle(double acceleration, const LateralTyreParams& tyre, double friction) {
   constexpr double kNearTheLimit = 0.95;
   const double used =
       std::clamp(acceleration / (friction * kGravity), -kNearTheLimit, kNearTheLimit);

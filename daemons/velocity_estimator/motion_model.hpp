@@ -22,7 +22,7 @@ Eigen::Vector2d VelocityAt(const StateVector& state, const Eigen::Vector2d& posi
 
 /// Slip angle of a tyre that passes `acceleration` times its load over g: the inverse of the tyre
 /// curve, level near the limit [rad].
-double SlipAngle(double acceleration, const TyreParams& tyre, double friction);
+double SlipAngle(double acceleration, const LateralTyreParams& tyre, double friction);
 
 /// Slip of the wheels as a first-order Gauss-Markov process about what the tyres' stiffness says
 /// for the present longitudinal force, in parts as the load. Its deviation is bounded by the force
@@ -30,7 +30,7 @@ double SlipAngle(double acceleration, const TyreParams& tyre, double friction);
 /// wheel hardly slips. Where the torque is not measured, the acceleration tells it, in equal parts.
 class SlipModel {
  public:
-  SlipModel(const SlipParams& params, const TyreParams& tyre, const Car& car)
+  SlipModel(const SlipParams& params, const LateralTyreParams& tyre, const Car& car)
       : params_(params), tyre_(tyre), car_(car) {}
 
   /// The slip about which all wheels vary, for a longitudinal acceleration [m/s^2].
@@ -44,7 +44,7 @@ class SlipModel {
 
  private:
   SlipParams params_;
-  TyreParams tyre_;
+  LateralTyreParams tyre_;
   Car car_;
 };
 

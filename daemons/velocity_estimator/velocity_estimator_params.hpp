@@ -25,7 +25,7 @@ struct SlipParams {
 
 /// The tyres, all alike: lateral force over load by slip angle, D sin(C atan(B alpha)) [Pacejka
 /// 1987, without E], D = SlipParams::friction. Their longitudinal slip has the same stiffness.
-struct TyreParams {
+struct LateralTyreParams {
   double stiffness = 0.0;            // B C D, per rad and per unit of slip
   double shape = 0.0;                // C
   double sigma_angle = 0.0;          // rad that the slip angle is off by: rolling straight
@@ -70,7 +70,7 @@ struct VelocityEstimatorParams {
   Car car;
   MotionNoise motion;
   SlipParams slip;
-  TyreParams tyre;
+  LateralTyreParams tyre;
   SensorNoise noise;
   SensorDeadlines deadlines;
   SensorMonitorParams monitor;

@@ -240,7 +240,7 @@ void VelocityFilter::FuseRearAxle() {
   const auto slide = [this](const StateVector& state) {
     return Scalar(RearAxleSlide(state, params_));
   };
-  const TyreParams& tyre = params_.tyre;
+  const LateralTyreParams& tyre = params_.tyre;
   const double angle = std::abs(SlipAngle(mean()[kAcceleration + 1], tyre, params_.slip.friction));
   const double sigma = speed * (tyre.sigma_angle + tyre.sigma_angle_share * angle);
   // The error lasts: readings of one time constant together tell no more than one.

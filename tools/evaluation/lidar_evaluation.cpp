@@ -45,9 +45,9 @@ nlohmann::json Share(double part, double whole) {
 
 }  // namespace
 
-void CountReturns(const PointCloud& cloud, std::vector<TrueCone>& cones) {
+void CountReturns(const PointCloud& cloud, std::vector<ScannedCone>& cones) {
   std::vector<uint32_t> about;
-  for (TrueCone& cone : cones) {
+  for (ScannedCone& cone : cones) {
     const Eigen::Vector2f position = cone.position.cast<float>();
     about.clear();
     for (uint32_t i = 0; i < cloud.size(); ++i) {
@@ -65,7 +65,7 @@ void CountReturns(const PointCloud& cloud, std::vector<TrueCone>& cones) {
   }
 }
 
-ScanMatch MatchScan(const std::vector<TrueCone>& cones,
+ScanMatch MatchScan(const std::vector<ScannedCone>& cones,
                     const std::vector<LidarDetection>& detections) {
   struct Pair {
     double distance;
@@ -92,7 +92,7 @@ ScanMatch MatchScan(const std::vector<TrueCone>& cones,
   return match;
 }
 
-void LidarFigures::Add(const std::vector<TrueCone>& cones,
+void LidarFigures::Add(const std::vector<ScannedCone>& cones,
                        const std::vector<LidarDetection>& detections, const Eigen::Vector2d& sensor,
                        const std::vector<double>& ms) {
   Trouble& trouble = troubles_.emplace_back(Trouble{scans_, 0, 0});

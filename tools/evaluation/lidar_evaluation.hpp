@@ -11,7 +11,7 @@
 namespace hairpin {
 
 /// A true cone in base, and what the sensor had of it.
-struct TrueCone {
+struct ScannedCone {
   Eigen::Vector2d position;
   ConeColour colour = ConeColour::kUnknown;
   int returns = 0;  // more than kCountedHeight above the ground within kCountedRadius
@@ -29,7 +29,7 @@ inline constexpr int kFewestReturns = 3;        // of a cone that counts for rec
 
 /// Counts the returns of each cone in the cloud. The ground is taken from the points about each
 /// cone, so that the figure does not depend on what is measured by it.
-void CountReturns(const PointCloud& cloud, std::vector<TrueCone>& cones);
+void CountReturns(const PointCloud& cloud, std::vector<ScannedCone>& cones);
 
 /// What one scan came to. Indices of the partner, -1 for none.
 struct ScanMatch {
@@ -39,7 +39,7 @@ struct ScanMatch {
 };
 
 /// Nearest pairs first, one to one.
-ScanMatch MatchScan(const std::vector<TrueCone>& cones,
+ScanMatch MatchScan(const std::vector<ScannedCone>& cones,
                     const std::vector<LidarDetection>& detections);
 
 /// Adds up scans and tells the figures.
@@ -47,7 +47,7 @@ class LidarFigures {
  public:
   /// `sensor`: its place in base, for errors along and across the line of sight. `ms`: wall time of
   /// each stage, and of the whole last.
-  void Add(const std::vector<TrueCone>& cones, const std::vector<LidarDetection>& detections,
+  void Add(const std::vector<ScannedCone>& cones, const std::vector<LidarDetection>& detections,
            const Eigen::Vector2d& sensor, const std::vector<double>& ms);
   nlohmann::json ToJson() const;
 

@@ -41,7 +41,7 @@ class Replay {
     const std::optional<TrueState> state = trajectory_.At(message.utime);
     if (!state || !track_) return;
     const Pose2 T_base_map = state->T_map_base.Inverse();
-    std::vector<TrueCone> truth;
+    std::vector<ScannedCone> truth;
     for (const truth_cone_t& cone : track_->cones) {
       const auto colour = static_cast<ConeColour>(cone.colour);
       const Eigen::Vector2d position = T_base_map * Eigen::Vector2d(cone.x_m, cone.y_m);

@@ -26,7 +26,8 @@ void Cross(Canvas& canvas, const Eigen::Vector2d& at) {
 }  // namespace
 
 std::string DrawScan(int64_t number, const PointCloud& cloud, const std::vector<float>& heights,
-                     const std::vector<Candidate>& candidates, const std::vector<TrueCone>& cones,
+                     const std::vector<Candidate>& candidates,
+                     const std::vector<ScannedCone>& cones,
                      const std::vector<LidarDetection>& detections) {
   Canvas canvas(kCentre, kRadius, kPixelsPerMetre);
   for (size_t i = 0; i < cloud.size(); ++i) {

@@ -12,7 +12,8 @@ namespace hairpin {
 /// no cone is near), true cones that were missed (red crosses), and refused candidates (small
 /// violet rings).
 std::string DrawScan(int64_t number, const PointCloud& cloud, const std::vector<float>& heights,
-                     const std::vector<Candidate>& candidates, const std::vector<TrueCone>& cones,
+                     const std::vector<Candidate>& candidates,
+                     const std::vector<ScannedCone>& cones,
                      const std::vector<LidarDetection>& detections);
 
 }  // namespace hairpin

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kReach = 30.0;  // m: farther cones are not looked for
 
-std::vector<TrueCone> InBase(const std::vector<SurveyedCone>& map, const Pose2& T_map_base) {
-  std::vector<TrueCone> cones;
+std::vector<ScannedCone> InBase(const std::vector<SurveyedCone>& map, const Pose2& T_map_base) {
+  std::vector<ScannedCone> cones;
   for (const SurveyedCone& cone : map) {
     const Eigen::Vector2d position = T_map_base.Inverse() * cone.position;
     if (position.norm() < kReach) cones.push_back({position, cone.colour, 0});
@@ -29,7 +29,7 @@ void DetectInRecording(const std::string& run, const std::string& map, int rings
     std::vector<LidarDetection> detections;
     for (size_t i = 0; i < found->cones.size(); ++i)
       detections.push_back({found->cones[i].position.cast<double>(), found->colours[i]});
-    std::vector<TrueCone> truth = InBase(surveyed, found->scan.T_map_base);
+    std::vector<ScannedCone> truth = InBase(surveyed, found->scan.T_map_base);
     CountReturns(recording.cloud(), truth);
     listener({number, recording.cloud(), recording.detector(), truth, detections,
               recording.sensor_position(), stopwatch.Laps()});

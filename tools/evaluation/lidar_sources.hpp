@@ -15,7 +15,7 @@ struct EvaluatedScan {
   int64_t number;
   const PointCloud& cloud;
   const LidarConeDetector& detector;
-  const std::vector<TrueCone>& truth;  // returns counted
+  const std::vector<ScannedCone>& truth;  // returns counted
   const std::vector<LidarDetection>& detections;
   Eigen::Vector2d sensor;         // of the foremost, in base
   const std::vector<double>& ms;  // wall time of each stage, then of all

@@ -29,7 +29,7 @@ std::filesystem::path Written(const std::string& name, const std::string& text) 
 }
 
 TEST(MatchScan, TakesTheNearestPairsFirstAndEachConeOnce) {
-  const std::vector<TrueCone> cones{{{5.0, 0.0}}, {{5.4, 0.0}}, {{9.0, 0.0}}};
+  const std::vector<ScannedCone> cones{{{5.0, 0.0}}, {{5.4, 0.0}}, {{9.0, 0.0}}};
   const std::vector<LidarDetection> detections{
       {{5.1, 0.0}}, {{5.3, 0.0}}, {{5.2, 0.2}}, {{7.0, 0.0}}};
   const ScanMatch match = MatchScan(cones, detections);
@@ -44,7 +44,7 @@ TEST(CountReturns, CountsWhatStandsAboveTheGroundAboutACone) {
   cloud.Add({5.0f, 0.0f, 0.27f}, 0.0f, 0, 0, 0);
   cloud.Add({5.2f, 0.0f, 0.40f}, 0.0f, 0, 0, 0);
   cloud.Add({5.5f, 0.0f, 0.40f}, 0.0f, 0, 0, 0);  // beside it
-  std::vector<TrueCone> cones{{{5.0, 0.0}}, {{20.0, 0.0}}};
+  std::vector<ScannedCone> cones{{{5.0, 0.0}}, {{20.0, 0.0}}};
   CountReturns(cloud, cones);
   EXPECT_EQ(cones[0].returns, 2);
   EXPECT_EQ(cones[1].returns, 0);
@@ -52,11 +52,11 @@ TEST(CountReturns, CountsWhatStandsAboveTheGroundAboutACone) {
 
 TEST(LidarFigures, TellRecallPrecisionAndError) {
   LidarFigures figures;
-  const std::vector<TrueCone> cones{{{5.0, 0.0}, ConeColour::kBlue, 9},
-                                    {{8.0, 1.0}, ConeColour::kYellow, 3},
-                                    {{9.0, 1.0}, ConeColour::kYellow, 2},   // too few returns
-                                    {{-9.0, 1.0}, ConeColour::kYellow, 9},  // behind
-                                    {{12.0, 0.0}, ConeColour::kBlue, 4}};
+  const std::vector<ScannedCone> cones{{{5.0, 0.0}, ConeColour::kBlue, 9},
+                                       {{8.0, 1.0}, ConeColour::kYellow, 3},
+                                       {{9.0, 1.0}, ConeColour::kYellow, 2},   // too few returns
+                                       {{-9.0, 1.0}, ConeColour::kYellow, 9},  // behind
+                                       {{12.0, 0.0}, ConeColour::kBlue, 4}};
   const std::vector<LidarDetection> detections{{{5.04, 0.0}, {0.0, 1.0, 0.0, 0.0, 0.0}},
                                                {{12.0, 0.03}, {0.0, 0.0, 1.0, 0.0, 0.0}},
                                                {{6.0, 2.0}}};

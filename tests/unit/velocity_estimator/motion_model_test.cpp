@@ -8,11 +8,11 @@
 namespace hairpin {
 namespace {
 
-constexpr TyreParams kTyre{.stiffness = 20.0,
-                           .shape = 1.4,
-                           .sigma_angle = 0.005,
-                           .sigma_angle_share = 0.3,
-                           .angle_time_constant = 0.5};
+constexpr LateralTyreParams kTyre{.stiffness = 20.0,
+                                  .shape = 1.4,
+                                  .sigma_angle = 0.005,
+                                  .sigma_angle_share = 0.3,
+                                  .angle_time_constant = 0.5};
 
 StateVector StateOf(double vx, double vy, double yaw_rate, double ax = 0.0, double ay = 0.0) {
   StateVector state = StateVector::Zero();
