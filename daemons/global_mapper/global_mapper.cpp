@@ -25,6 +25,11 @@ Motion UnknownMotion(double seconds) {
   return motion;
 }
 
+/// Without a gate the line goes across where the map began.
+MapGate GateOf(const std::vector<GlobalCone>& cones) {
+  return FindMapGate(cones).value_or(MapGate{{0.0, kGateMargin}, {0.0, -kGateMargin}});
+}
+
 }  // namespace
 
 void GlobalMapperParams::Validate() const {
@@ -166,16 +171,15 @@ GlobalMapEstimate GlobalMapper::Estimate(const LocalMapInput& map, const Pose2& 
 
 void GlobalMapper::CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer) {
   if (!map_.loop_closed()) return;
-  if (was_closed) return CountLaps(T_map_base, odometer, map_.Cones());
+  const bool is_past = GateOf(map_.Cones()).Past(T_map_base.position()) >= 0.0;
+  if (was_closed || !is_past) return CountLaps(T_map_base, odometer, map_.Cones());
   laps_ = 1;
   lap_odometer_ = odometer;
 }
 
 void GlobalMapper::CountLaps(const Pose2& T_map_base, double odometer,
                              const std::vector<GlobalCone>& cones) {
-  // Without a gate the line goes across where the map began.
-  const MapGate gate =
-      FindMapGate(cones).value_or(MapGate{{0.0, kGateMargin}, {0.0, -kGateMargin}});
+  const MapGate gate = GateOf(cones);
   const double past = gate.Past(T_map_base.position());
   const bool through = gate.Spans(T_map_base.position(), kGateMargin);
   const bool crossed = past_gate_ && *past_gate_ < 0.0 && past >= 0.0 && past < kMaxJump && through;

@@ -61,7 +61,8 @@ class GlobalMapper {
 
   bool loop_closed() const { return map_.loop_closed(); }
   bool localising() const { return localiser_.has_value(); }
-  /// Times that the loop was closed or, later, the start line crossed.
+  /// Times that the start line was crossed with the loop closed; a loop that closes past the line
+  /// counts at once.
   int laps() const { return laps_; }
 
  private:

@@ -132,6 +132,7 @@ class TrackMap {
   double CorrectionChi2(const Pose2& correction, const Pose2& pose,
                         const Eigen::Matrix3d& covariance) const;
   std::optional<MergeRecord> FindAcrossGap(int64_t utime, bool last_chance) const;
+  bool IsBackAtTheStart(const Pose2& correction) const;
   bool ClosesLoop(const MergeRecord& merge, const Pose2& correction) const;
   bool FitsAfterSolve(const MergeRecord& merge) const;
   void TryToClose(bool last_chance, Step& step);

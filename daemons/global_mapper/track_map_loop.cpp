@@ -73,6 +73,14 @@ double TrackMap::CorrectionChi2(const Pose2& correction, const Pose2& pose,
   return shift.dot(covariance.ldlt().solve(shift));
 }
 
+/// Only there is the lap closed; elsewhere two stretches of the track come near each other, and one
+/// that passes the start does not lead there.
+bool TrackMap::IsBackAtTheStart(const Pose2& correction) const {
+  const Pose2 T_map_base = correction * last_pose();
+  return T_map_base.position().norm() <= params_.loop.search_radius &&
+         std::cos(T_map_base.yaw) > 0.0;
+}
+
 std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
   const std::vector<int64_t> recent = Landmarks(true);
   const std::vector<int64_t> old = Landmarks(false);
@@ -84,10 +92,7 @@ std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {
   if (!match || !IsExplained(recent, *match)) return std::nullopt;
   const bool by_shape = chi2(match->T_to_from) > params_.loop.gate_chi2;
   if (by_shape && match->pairs.size() < params_.loop.min_pairs_by_shape) return std::nullopt;
-  // Only back at the start is the lap closed; elsewhere two stretches of the track come near each
-  // other.
-  const double to_start = (match->T_to_from * last_pose().position()).norm();
-  const bool loop = to_start <= params_.loop.search_radius;
+  const bool loop = IsBackAtTheStart(match->T_to_from);
   if (by_shape && !loop) return std::nullopt;
   MergeRecord merge{utime, loop, by_shape, {}};
   for (const auto& [from, to] : match->pairs) merge.pairs.emplace_back(recent[from], old[to]);
@@ -136,7 +141,7 @@ bool TrackMap::ClosesLoop(const MergeRecord& merge, const Pose2& correction) con
     return info.last_seen < gap_->odometer - params_.memory_distance;
   });
   return static_cast<size_t>(old) >= params_.loop.constellation.min_pairs &&
-         (correction * last_pose().position()).norm() <= params_.loop.search_radius;
+         IsBackAtTheStart(correction);
 }
 
 bool TrackMap::FitsAfterSolve(const MergeRecord& merge) const {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "daemons/global_mapper/map_file.hpp"
+#include "daemons/global_mapper/race_line/corridor.hpp"
 #include "tests/support/race_run.hpp"
 #include "tools/report/map_comparison.hpp"
 
@@ -34,6 +36,20 @@ TEST(GlobalMap, ClosesItsLoopWithTheBiasesOfTheMotionSensorsDoubled) {
            sensors + "ground_speed.scale=0.006", sensors + "ground_speed.misalignment_deg=0.2",
            sensors + "gnss.position_bias_m=0.8"})
           .log);
+}
+
+// FSS19 passes its start at 30 m, the other way round, when half of it is driven.
+TEST(GlobalMap, OfATrackThatPassesItsOwnStartIsWholeAndLeadsBackToIt) {
+  const std::string track = DataFolder() / "tracks/FSS19.yaml";
+  if (!std::filesystem::exists(track)) GTEST_SKIP() << "no " << track;
+  const TemporaryFolder folder;
+  const RaceRun run =
+      RunInProcess(track, 1, {}, {"global_mapper.files.directory=" + folder.path()});
+  ExpectGoodMap(run.log);
+  const MapFile map = LoadMapFile(folder.File("map.yaml"));
+  EXPECT_EQ(map.laps, 1);
+  EXPECT_EQ(map.cones.size(), run.log.truth_track->cones.size());
+  EXPECT_NO_THROW(LapOf(map.driven, 50.0));
 }
 
 }  // namespace
