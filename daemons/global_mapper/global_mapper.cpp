@@ -171,7 +171,9 @@ GlobalMapEstimate GlobalMapper::Estimate(const LocalMapInput& map, const Pose2& 
 
 void GlobalMapper::CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer) {
   if (!map_.loop_closed()) return;
-  const bool is_past = GateOf(map_.Cones()).Past(T_map_base.position()) >= 0.0;
+  // A stretch of the track may pass the start the other way round, and see its cones.
+  const bool is_past =
+      GateOf(map_.Cones()).Past(T_map_base.position()) >= 0.0 && std::cos(T_map_base.yaw) > 0.0;
   if (was_closed || !is_past) return CountLaps(T_map_base, odometer, map_.Cones());
   laps_ = 1;
   lap_odometer_ = odometer;

@@ -73,12 +73,9 @@ double TrackMap::CorrectionChi2(const Pose2& correction, const Pose2& pose,
   return shift.dot(covariance.ldlt().solve(shift));
 }
 
-/// Only there is the lap closed; elsewhere two stretches of the track come near each other, and one
-/// that passes the start does not lead there.
+/// Only there the loop is closed; elsewhere two stretches of the track come near each other.
 bool TrackMap::IsBackAtTheStart(const Pose2& correction) const {
-  const Pose2 T_map_base = correction * last_pose();
-  return T_map_base.position().norm() <= params_.loop.search_radius &&
-         std::cos(T_map_base.yaw) > 0.0;
+  return (correction * last_pose()).position().norm() <= params_.loop.search_radius;
 }
 
 std::optional<MergeRecord> TrackMap::FindLoop(int64_t utime) const {

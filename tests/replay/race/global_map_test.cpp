@@ -38,7 +38,8 @@ TEST(GlobalMap, ClosesItsLoopWithTheBiasesOfTheMotionSensorsDoubled) {
           .log);
 }
 
-// FSS19 passes its start at 30 m, the other way round, when half of it is driven.
+// FSS19 passes its start at 30 m, the other way round, when half of it is driven: the loop closes
+// there, the lap does not end.
 TEST(GlobalMap, OfATrackThatPassesItsOwnStartIsWholeAndLeadsBackToIt) {
   const std::string track = DataFolder() / "tracks/FSS19.yaml";
   if (!std::filesystem::exists(track)) GTEST_SKIP() << "no " << track;
