@@ -126,10 +126,10 @@ LocalMapInput GlobalMapper::Caught(const LocalMapInput& map) const {
 
 GlobalMapper::Outcome GlobalMapper::Map(const LocalMapInput& map) {
   Outcome outcome;
+  const bool was_closed = map_.loop_closed();
   EndEpoch(map, outcome);
   Motion motion;
   if (keyframe_) motion = MotionSince(*keyframe_, map);
-  const bool was_closed = map_.loop_closed();
   bool valid = true;
   if (!keyframe_ || map_.IsKeyframe(motion.T_from_to)) {
     TrackMap::Step step = map_.Observe(Caught(map), motion);
@@ -144,9 +144,8 @@ GlobalMapper::Outcome GlobalMapper::Map(const LocalMapInput& map) {
   estimate.pose_covariance = map_.last_covariance() + motion.covariance;
   estimate.cones = map_.Cones();
   estimate.keyframes = static_cast<int>(map_.graph().num_poses());
-  estimate.laps = laps_;
   CountLapsOfMap(was_closed, estimate.T_map_base,
-                 map_.odometer() + motion.T_from_to.position().norm());
+                 map_.odometer() + motion.T_from_to.position().norm(), estimate.cones);
   estimate.laps = laps_;
   FinishLap(outcome);
   outcome.estimate = std::move(estimate);
@@ -169,12 +168,15 @@ GlobalMapEstimate GlobalMapper::Estimate(const LocalMapInput& map, const Pose2& 
   return estimate;
 }
 
-void GlobalMapper::CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer) {
+void GlobalMapper::CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer,
+                                  const std::vector<GlobalCone>& cones) {
   if (!map_.loop_closed()) return;
-  // A stretch of the track may pass the start the other way round, and see its cones.
+  if (was_closed) return CountLaps(T_map_base, odometer, cones);
+  // A loop that closes past the line has passed it. A stretch of the track may pass the start the
+  // other way round, and see its cones.
   const bool is_past =
-      GateOf(map_.Cones()).Past(T_map_base.position()) >= 0.0 && std::cos(T_map_base.yaw) > 0.0;
-  if (was_closed || !is_past) return CountLaps(T_map_base, odometer, map_.Cones());
+      GateOf(cones).Past(T_map_base.position()) >= 0.0 && std::cos(T_map_base.yaw) > 0.0;
+  if (!is_past) return CountLaps(T_map_base, odometer, cones);
   laps_ = 1;
   lap_odometer_ = odometer;
 }
@@ -208,7 +210,7 @@ void GlobalMapper::Replay(const std::vector<MapRecord>& records) {
     }
     const bool was_closed = map_.loop_closed();
     map_.Replay(record);
-    CountLapsOfMap(was_closed, map_.last_pose(), map_.odometer());
+    CountLapsOfMap(was_closed, map_.last_pose(), map_.odometer(), map_.Cones());
   }
   if (map_.settled()) {
     finished_laps_ = laps_;

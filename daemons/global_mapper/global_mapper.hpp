@@ -59,11 +59,7 @@ class GlobalMapper {
   /// else comes in.
   void Replay(const std::vector<MapRecord>& records);
 
-  bool loop_closed() const { return map_.loop_closed(); }
   bool localising() const { return localiser_.has_value(); }
-  /// Times that the start line was crossed with the loop closed; a loop that closes past the line
-  /// counts at once.
-  int laps() const { return laps_; }
 
  private:
   struct Seen {
@@ -79,7 +75,8 @@ class GlobalMapper {
   Outcome Map(const LocalMapInput& map);
   GlobalMapEstimate Estimate(const LocalMapInput& map, const Pose2& T_map_base) const;
   void FinishLap(Outcome& outcome);
-  void CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer);
+  void CountLapsOfMap(bool was_closed, const Pose2& T_map_base, double odometer,
+                      const std::vector<GlobalCone>& cones);
   void CountLaps(const Pose2& T_map_base, double odometer, const std::vector<GlobalCone>& cones);
 
   GlobalMapperParams params_;
@@ -92,7 +89,7 @@ class GlobalMapper {
   std::optional<double> past_gate_;
   double odometer_ = 0.0;
   double lap_odometer_ = 0.0;
-  int laps_ = 0;
+  int laps_ = 0;            // times that the start line was crossed with the loop closed
   int finished_laps_ = 0;   // those whose map was told
   double lap_began_ = 0.0;  // the first that was not told, on the odometer [m]
 };

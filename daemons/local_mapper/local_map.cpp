@@ -133,16 +133,12 @@ Pose2 LocalMap::Refine(const ObservationSet& set, const Pose2& predicted,
                     params_.association, params_.refinement.min_pairs);
 }
 
-std::vector<Gaussian2> LocalMap::States() const {
+std::vector<std::optional<size_t>> LocalMap::AssociateWithLandmarks(
+    const std::vector<Gaussian2>& observations_local) const {
   std::vector<Gaussian2> states;
   states.reserve(landmarks_.size());
   for (const Landmark& landmark : landmarks_) states.push_back(landmark.state);
-  return states;
-}
-
-std::vector<std::optional<size_t>> LocalMap::AssociateWithLandmarks(
-    const std::vector<Gaussian2>& observations_local) const {
-  return Associate(States(), observations_local, params_.association);
+  return Associate(states, observations_local, params_.association);
 }
 
 bool LocalMap::IsNew(const Eigen::Vector2d& position) const {

@@ -112,7 +112,6 @@ class LocalMap {
   };
 
   void Advance(int64_t utime, const Pose2& T_local_base);
-  std::vector<Gaussian2> States() const;
   std::vector<std::optional<size_t>> AssociateWithLandmarks(
       const std::vector<Gaussian2>& observations_local) const;
   bool IsNew(const Eigen::Vector2d& position) const;

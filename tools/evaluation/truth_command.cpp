@@ -25,17 +25,12 @@ struct TruthOptions {
 };
 
 Track LoadSurveyedTrack(const std::string& file) {
-  try {
-    Track track = LoadTrack(file);
-    if (!track.origin) {
-      throw RecordingError(file +
-                           ": origin: is missing: where on Earth the track lies; tools/survey "
-                           "writes it");
-    }
-    return track;
-  } catch (const TrackError& error) {
-    throw RecordingError(error.what());
+  Track track = LoadTrack(file);
+  if (!track.origin) {
+    throw RecordingError(
+        file + ": origin: is missing: where on Earth the track lies; tools/survey writes it");
   }
+  return track;
 }
 
 RunLog LoadLog(const TruthOptions& options) {

@@ -2,23 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/global_mapper/lap_world.hpp"
+
 namespace hairpin {
 namespace {
 
 constexpr int64_t kTick = 10'000;  // us
 
-OdometryParams Params() {
-  OdometryParams params;
-  params.history = 10.0;
-  params.error_time = 0.2;
-  params.position_sigma = 0.015;
-  params.yaw_sigma = 0.001;
-  params.min_position_sigma = 0.002;
-  params.min_yaw_sigma = 0.0002;
-  params.gap_acceleration = 10.0;
-  params.gap_yaw_acceleration = 5.0;
-  return params;
-}
+OdometryParams Params() { return ShippedConfig().params.odometry; }
 
 TEST(VelocityOdometry, GivesAMotionOfWhichNothingWasHeardTheCovarianceOfOneThatWas) {
   VelocityOdometry odometry(Params());
