@@ -43,9 +43,7 @@ struct Options {
 };
 
 void DefineOptions(CLI::App& app, const DaemonSpec& spec, Options& options) {
-  app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")
-      ->capture_default_str()
-      ->envname("HAIRPIN_CONFIG_DIR");
+  AddConfigDirOption(app, options.config_dir);
   app.add_option("--lcm-url", options.lcm_url, "LCM provider")
       ->capture_default_str()
       ->envname("LCM_DEFAULT_URL");

@@ -28,4 +28,10 @@ int RunProgram(CLI::App& app, int argc, const char* const* argv, const std::func
   }
 }
 
+void AddConfigDirOption(CLI::App& app, std::string& directory) {
+  app.add_option("--config-dir", directory, "folder of the .yaml files")
+      ->envname("HAIRPIN_CONFIG_DIR")
+      ->capture_default_str();
+}
+
 }  // namespace hairpin

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "common/errors.hpp"
 
@@ -14,5 +15,8 @@ namespace hairpin {
 /// what was thrown, its text on stderr, each line after the app's name. Callbacks of subcommands
 /// run while parsing, and may throw alike.
 int RunProgram(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& work);
+
+/// --config-dir, and HAIRPIN_CONFIG_DIR in the environment; `directory` is the default.
+void AddConfigDirOption(CLI::App& app, std::string& directory);
 
 }  // namespace hairpin

@@ -1,6 +1,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/program.hpp"
 #include "tools/evaluation/commands.hpp"
 #include "tools/evaluation/figures.hpp"
 #include "tools/evaluation/lidar_evaluation.hpp"
@@ -32,9 +33,7 @@ void DefineOptions(CLI::App& app, LidarOptions& options) {
   app.add_option("--rings", options.rings, "of the 64 recorded: 32 leaves out every second one")
       ->check(CLI::IsMember({64, 32, 16}))
       ->capture_default_str();
-  app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")
-      ->envname("HAIRPIN_CONFIG_DIR")
-      ->capture_default_str();
+  AddConfigDirOption(app, options.config_dir);
   app.add_option("--set", options.overrides,
                  "KEY=VALUE in place of the config file's value (repeatable)")
       ->allow_extra_args(false);

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/program.hpp"
 #include "daemons/boundary_estimator/boundary_estimator_node.hpp"
 #include "tools/evaluation/commands.hpp"
 #include "tools/evaluation/figures.hpp"
@@ -21,9 +22,7 @@ struct PlannerOptions {
 
 void DefineOptions(CLI::App& app, PlannerOptions& options) {
   app.add_option("FILE", options.file, "recorded run: JSON list of frames")->required();
-  app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")
-      ->envname("HAIRPIN_CONFIG_DIR")
-      ->capture_default_str();
+  AddConfigDirOption(app, options.config_dir);
   app.add_option("--set", options.overrides,
                  "KEY=VALUE in place of the config file's value (repeatable)")
       ->allow_extra_args(false);

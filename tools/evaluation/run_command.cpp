@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "common/program.hpp"
 #include "tools/evaluation/commands.hpp"
 #include "tools/evaluation/figures.hpp"
 #include "tools/evaluation/run_evaluation.hpp"
@@ -40,9 +41,7 @@ void AddRunCommand(CLI::App& app) {
   run->add_option("--rings", options->rings, "of the 64 recorded: 32 leaves out every second one")
       ->check(CLI::IsMember({64, 32, 16}))
       ->capture_default_str();
-  run->add_option("--config-dir", options->config_dir, "folder of the .yaml files")
-      ->envname("HAIRPIN_CONFIG_DIR")
-      ->capture_default_str();
+  AddConfigDirOption(*run, options->config_dir);
   run->add_option("--picture", options->picture, "draw survey, map and way into this .svg file");
   run->add_flag("--json", options->json, "print one JSON object");
   run->callback([options] { Run(*options); });

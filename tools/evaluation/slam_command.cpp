@@ -2,6 +2,7 @@
 #include <map>
 #include <memory>
 
+#include "common/program.hpp"
 #include "daemons/global_mapper/global_mapper_node.hpp"
 #include "tools/evaluation/commands.hpp"
 #include "tools/evaluation/figures.hpp"
@@ -51,9 +52,7 @@ void AddSlamCommand(CLI::App& app) {
                    "steps between two solves of everything where no loop closes")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  slam->add_option("--config-dir", options->config_dir, "folder of the .yaml files")
-      ->envname("HAIRPIN_CONFIG_DIR")
-      ->capture_default_str();
+  AddConfigDirOption(*slam, options->config_dir);
   slam->add_flag("--json", options->json, "print one JSON object");
   slam->callback([options] { Run(*options); });
 }

@@ -5,6 +5,7 @@
 
 #include "common/clock.hpp"
 #include "common/daemon.hpp"
+#include "common/program.hpp"
 #include "tools/evaluation/commands.hpp"
 #include "tools/evaluation/figures.hpp"
 #include "tools/evaluation/receiver_truth.hpp"
@@ -161,9 +162,7 @@ void AddTruthCommand(CLI::App& app) {
   truth->add_flag("--replace", options->replace,
                   "where the log holds TRUTH already, a simulator's: leave it out, and tell how "
                   "far it was");
-  truth->add_option("--config-dir", options->config_dir, "folder of the .yaml files")
-      ->envname("HAIRPIN_CONFIG_DIR")
-      ->capture_default_str();
+  AddConfigDirOption(*truth, options->config_dir);
   truth
       ->add_option("--set", options->overrides,
                    "KEY=VALUE in place of gnss_driver.yaml's value (repeatable)")

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "common/daemon.hpp"
+#include "common/program.hpp"
 #include "daemons/velocity_estimator/velocity_estimator_node.hpp"
 #include "tools/evaluation/commands.hpp"
 #include "tools/evaluation/figures.hpp"
@@ -50,9 +51,7 @@ void AddVelocityCommand(CLI::App& app) {
       app.add_subcommand("velocity", "velocity_estimator on the sensors of a recorded drive");
   const auto options = std::make_shared<VelocityOptions>();
   velocity->add_option("--run", options->run, "folder of the recording's .csv files")->required();
-  velocity->add_option("--config-dir", options->config_dir, "folder of the .yaml files")
-      ->envname("HAIRPIN_CONFIG_DIR")
-      ->capture_default_str();
+  AddConfigDirOption(*velocity, options->config_dir);
   velocity->add_option("--car", options->car, "the car that drove: a folder of CONFIG_DIR/cars")
       ->capture_default_str();
   velocity

@@ -153,9 +153,7 @@ int Main(int argc, char** argv) {
   app.add_option("--journal", options.journal,
                  "every point and undo, at once on the disk; goes on where it ended (default: the "
                  "track's name with .journal)");
-  app.add_option("--config-dir", options.config_dir, "folder of the .yaml files")
-      ->envname("HAIRPIN_CONFIG_DIR")
-      ->capture_default_str();
+  AddConfigDirOption(app, options.config_dir);
   return RunProgram(app, argc, argv, [&options] {
     if (options.journal.empty()) options.journal = options.out + ".journal";
     Run(options);
