@@ -15,7 +15,9 @@ namespace hairpin {
 /// "192.168.1.201" in host byte order; empty for anything else.
 std::optional<uint32_t> ParseIpv4(const std::string& text);
 
-/// A UDP socket on one port, with the kernel's receive time of each packet.
+/// A UDP socket on one port, with the kernel's receive time of each packet. The first packets after
+/// the socket opens may bear the time they were read: the kernel starts its stamping in the
+/// background (net_enable_timestamp, Linux net/core/dev.c).
 class UdpReceiver {
  public:
   /// Throws std::runtime_error where the port cannot be bound. `buffer_bytes` is asked of the

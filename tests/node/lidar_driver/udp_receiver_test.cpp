@@ -5,7 +5,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <ctime>
+#include <thread>
 
 #include "daemons/lidar_driver/lidar_driver_process.hpp"
 #include "tests/support/own_network.hpp"
@@ -54,9 +56,24 @@ int64_t HostTime() {
   return int64_t{time.tv_sec} * 1'000'000 + time.tv_nsec / 1000;
 }
 
+/// True where the kernel, and not the read, stamped a packet within 5 s. The kernel turns its
+/// stamping on in the background once a first socket asks for it.
+bool WaitForKernelStamps(UdpReceiver& receiver) {
+  const UdpSender sender("127.0.0.1");
+  bool stamped = false;
+  for (int i = 0; i < 1000 && !stamped; ++i) {
+    sender.Send({0});
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const int64_t read = HostTime();
+    receiver.Receive(1, [&](const LidarPacket& packet) { stamped = packet.receive_utime < read; });
+  }
+  return stamped;
+}
+
 TEST(UdpReceiver, HandsOnPayloadSenderAndWhenTheKernelGotIt) {
   if (!InOwnNetwork()) return RunInOwnNetwork();
   UdpReceiver receiver(kPort, kBuffer);
+  ASSERT_TRUE(WaitForKernelStamps(receiver));
   const int64_t before = HostTime();
   UdpSender("127.0.0.7").Send({1, 2, 3});
   UdpSender("127.0.0.8").Send({});
