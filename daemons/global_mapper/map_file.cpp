@@ -67,7 +67,7 @@ class Reader {
 
   std::vector<double> Numbers(const YAML::Node& node, size_t size, const std::string& what,
                               double limit) const {
-    const auto numbers = Value<std::vector<double>>(node, what);
+    auto numbers = Value<std::vector<double>>(node, what);
     if (numbers.size() != size) Refuse(node, what + " has " + std::to_string(size) + " numbers");
     for (const double number : numbers) {
       if (!std::isfinite(number) || std::abs(number) > limit)

@@ -79,7 +79,7 @@ class Reader {
   bool good_ = true;
 };
 
-constexpr size_t kSightingBytes = 8 * (4 + 2 + 4 + kNumConeColours);
+constexpr size_t kSightingBytes = size_t{8} * (4 + 2 + 4 + kNumConeColours);
 
 void Put(const SightingRecord& sighting, Writer& writer) {
   writer.Put(sighting.landmark);

@@ -82,6 +82,7 @@ std::vector<SightingRecord> TrackMap::Associate(const LocalMapInput& map, const 
     if (!crowded) sightings.emplace_back(open[c], next++);
   }
   std::vector<SightingRecord> records;
+  records.reserve(sightings.size());
   for (const auto& [cone, landmark] : sightings)
     records.push_back(ToSighting(*cone, map.T_local_base, landmark));
   return records;

@@ -109,7 +109,8 @@ GnssDecoder::Epoch& GnssDecoder::At(int64_t key) {
     if (!epoch_->is_out) Emit();
     expected_ = epoch_->heard;
   }
-  epoch_.emplace().key = key;
+  epoch_ = Epoch{};
+  epoch_->key = key;
   return *epoch_;
 }
 

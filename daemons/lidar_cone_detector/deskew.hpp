@@ -26,6 +26,7 @@ class MotionTable {
   };
   /// The nearest step; ages beyond the duration get the last.
   const Motion& At(float age) const {
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): lround, a call per point, is dearer
     const auto step = static_cast<size_t>(age * kPerSecond + 0.5f);
     return steps_[step < steps_.size() ? step : steps_.size() - 1];
   }

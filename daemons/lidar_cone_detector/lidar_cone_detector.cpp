@@ -35,7 +35,7 @@ void LidarConeDetector::SelectObstacles(const PointCloud& cloud) {
   size_t count = 0;
   for (size_t i = 0; i < cloud.size(); ++i) {
     obstacles_[count] = static_cast<uint32_t>(i);
-    count += (heights[i] > low) & (heights[i] < high);
+    count += static_cast<size_t>(heights[i] > low) & static_cast<size_t>(heights[i] < high);
   }
   obstacles_.resize(count);
 }

@@ -11,8 +11,10 @@ constexpr double kSequencePeriod = 55.296e-6;  // s: all firings, and the lasers
 VelodyneModel Model(std::string_view name, uint8_t product_id, double distance_step,
                     size_t channels, size_t at_once) {
   VelodyneModel model{name, product_id, distance_step, kSequencePeriod, {}};
-  for (size_t channel = 0; channel < channels; ++channel)
-    model.firings.push_back(static_cast<double>(channel / at_once) * kFiringPeriod);
+  for (size_t channel = 0; channel < channels; ++channel) {
+    const size_t firing = channel / at_once;
+    model.firings.push_back(static_cast<double>(firing) * kFiringPeriod);
+  }
   return model;
 }
 

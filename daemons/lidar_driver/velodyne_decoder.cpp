@@ -123,12 +123,13 @@ VelodyneDecoder::VelodyneDecoder(const VelodyneParams& params)
       model_.sequence_period * static_cast<double>(model_.sequences_per_block());
   for (size_t i = 0; i < kReturns; ++i) {
     const size_t channel = i % channels;
+    const size_t sequence = i / channels;
     const double elevation = calibration.elevation[channel];
     const double offset = calibration.azimuth_offset[channel];
     if (!(std::abs(elevation) < 2.0 && std::abs(offset) < 2.0))
       throw std::invalid_argument("VelodyneDecoder: angles must be finite and below 2 rad");
     const double time =
-        static_cast<double>(i / channels) * model_.sequence_period + model_.firings[channel];
+        static_cast<double>(sequence) * model_.sequence_period + model_.firings[channel];
     lasers_.push_back(
         {static_cast<float>(std::cos(elevation)), static_cast<float>(std::sin(elevation)),
          static_cast<float>(offset * kHundredthsPerRadian), static_cast<float>(time / block_period),

@@ -110,6 +110,7 @@ MapComparison Compare(const global_map_t& map, const std::vector<SurveyedCone>& 
   for (const global_cone_t& cone : map.cones)
     cones.push_back({{cone.x_m, cone.y_m}, ColourOf(cone)});
   std::vector<Eigen::Vector2d> truth;
+  truth.reserve(survey.size());
   for (const SurveyedCone& cone : survey) truth.push_back(cone.position);
   return CompareCones(cones, truth, T_survey_map);
 }

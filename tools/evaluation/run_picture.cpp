@@ -6,6 +6,7 @@ namespace hairpin {
 
 std::string DrawMappedRun(const MappedRun& run, const std::vector<SurveyedCone>& survey) {
   std::vector<Eigen::Vector2d> positions;
+  positions.reserve(survey.size());
   for (const SurveyedCone& cone : survey) positions.push_back(cone.position);
   const View view(positions);
   Svg svg(View::kWidth, view.height(), "map of a recorded drive against the survey");

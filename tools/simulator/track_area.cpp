@@ -17,6 +17,7 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 std::vector<Eigen::Vector2d> Positions(const std::vector<TrackCone>& cones) {
   std::vector<Eigen::Vector2d> positions;
+  positions.reserve(cones.size());
   for (const TrackCone& cone : cones) positions.push_back(cone.position);
   return positions;
 }

@@ -147,6 +147,7 @@ int LineOf(const TrackProblem& problem, const TrackDraft& draft) {
 
 std::vector<LocatedCone> Ordered(const std::vector<LocatedCone>& cones) {
   std::vector<Eigen::Vector2d> points;
+  points.reserve(cones.size());
   for (const LocatedCone& cone : cones) points.push_back(cone.cone.position);
   std::vector<LocatedCone> ordered;
   for (const size_t i : OrderAlongClosedCurve(points)) ordered.push_back(cones[i]);

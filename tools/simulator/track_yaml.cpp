@@ -30,8 +30,8 @@ std::optional<double> ParseNumber(std::string_view text) {
   return value;
 }
 
-TrackYaml::TrackYaml(YAML::Node node, std::string file, std::string what, int line)
-    : node_(std::move(node)), file_(std::move(file)), what_(std::move(what)), line_(line) {}
+TrackYaml::TrackYaml(const YAML::Node& node, std::string file, std::string what, int line)
+    : node_(node), file_(std::move(file)), what_(std::move(what)), line_(line) {}
 
 TrackYaml TrackYaml::Parse(const std::string& text, const std::string& file) {
   try {

@@ -42,7 +42,7 @@ class TrackYaml {
   [[noreturn]] void Refuse(const std::string& reason) const;
 
  private:
-  TrackYaml(YAML::Node node, std::string file, std::string what, int line);
+  TrackYaml(const YAML::Node& node, std::string file, std::string what, int line);
   YAML::Node node_;
   std::string file_;
   std::string what_;  // the key, for messages

@@ -3,20 +3,8 @@
 #include <cmath>
 
 #include "tools/simulator/track_draft.hpp"
-#include "tools/simulator/track_ordering.hpp"
 
 namespace hairpin {
-namespace {
-
-std::vector<LocatedCone> Ordered(const std::vector<LocatedCone>& cones) {
-  std::vector<Eigen::Vector2d> points;
-  for (const LocatedCone& cone : cones) points.push_back(cone.cone.position);
-  std::vector<LocatedCone> ordered;
-  for (const size_t i : OrderAlongClosedCurve(points)) ordered.push_back(cones[i]);
-  return ordered;
-}
-
-}  // namespace
 
 Track TrackOf(const std::vector<SurveyedPoint>& points, const std::string& name) {
   if (points.empty()) throw TrackError(name + ": no points");
@@ -44,10 +32,7 @@ Track TrackOf(const std::vector<SurveyedPoint>& points, const std::string& name)
                      ": the start, and a point half a metre or more ahead of it, are needed");
   const Eigen::Vector2d forward = *ahead - *start;
   draft.start = {start->x(), start->y(), std::atan2(forward.y(), forward.x())};
-  draft.left = Ordered(draft.left);
-  draft.right = Ordered(draft.right);
-  JoinSides(draft);
-  Track track = Arrange(std::move(draft));
+  Track track = ArrangeUnordered(std::move(draft));
   track.origin = plane.origin();
   return track;
 }

@@ -62,6 +62,7 @@ std::vector<double> LapSpeeds(const std::vector<double>& curvature, double spaci
   }
   const size_t n = curvature.size();
   std::vector<double> squared;
+  squared.reserve(n);
   for (const double k : curvature) squared.push_back(Corner(k, params));
   for (size_t step = 2 * n; step-- > 0;) {
     const size_t here = step % n;
@@ -77,6 +78,7 @@ std::vector<double> LapSpeeds(const std::vector<double>& curvature, double spaci
     squared[next] = std::min(squared[next], squared[here] + 2.0 * acceleration * spacing);
   }
   std::vector<double> speeds;
+  speeds.reserve(n);
   for (const double v2 : squared) speeds.push_back(std::sqrt(std::max(v2, 0.0)));
   return speeds;
 }
