@@ -107,8 +107,6 @@ void Work(const DaemonSpec& spec, const Options& options, const NodeFactory& fac
 
 }  // namespace
 
-const char* BuildId() { return HAIRPIN_BUILD; }
-
 Heartbeat::Heartbeat(Bus& bus, int64_t car_hash) : bus_(bus), car_hash_(car_hash) {
   bus_.OnDataTime([this](int64_t utime) { OnDataTime(utime); });
 }

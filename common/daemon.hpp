@@ -13,7 +13,8 @@
 
 namespace hairpin {
 
-/// The commit this was built from.
+/// The commit this was built from, with "-dirty" where tracked files differed from it; "unknown"
+/// outside a git checkout.
 const char* BuildId();
 
 /// A node of any class, kept alive with its subscriptions. What RunDaemon() runs in a process of
